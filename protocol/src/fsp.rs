@@ -1,0 +1,1 @@
+//! FSP records: authenticity, protocol and verify record with their signatures (Annex A).

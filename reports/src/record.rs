@@ -1,0 +1,301 @@
+//! The run record: what a run leaves on disk, one JSON object a line, and everything reports are made of.
+//!
+//! Line 1 is a [`Header`], then one [`CaseRecord`] a case, flushed when the case ends, and a [`Footer`] when the run came to its
+//! end. A record without footer is valid and partial. Nothing here depends on wall time, so the same seed on a
+//! virtual clock gives the same octets.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Version of this schema; the number changes when a reader of the old one would misread.
+pub const SCHEMA: &str = "fsct-run/1";
+
+/// One line of the journal.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Line {
+    /// First line.
+    Header(Header),
+    /// A case.
+    Case(Box<CaseRecord>),
+    /// Last line of a complete run.
+    Footer(Footer),
+}
+
+/// What the run was asked to do, and of what.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Header {
+    /// [`SCHEMA`].
+    pub schema: String,
+    /// Version of fsct.
+    pub fsct: String,
+    /// The seed that everything random derives from.
+    pub seed: u64,
+    /// The device under test.
+    pub dut: DutInfo,
+    /// Name of the profile.
+    pub profile: String,
+    /// Number of expanded cases planned.
+    pub planned: usize,
+    /// Cases left out by the selection, with the term that excluded them: key, then reason.
+    pub not_applicable: Vec<(String, String)>,
+    /// Every tolerance in force: id (`A19`), then what it allows.
+    pub tolerances: BTreeMap<String, String>,
+}
+
+/// The device under test, in its own words and the words of the command line. Hostile text: escape it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct DutInfo {
+    /// Address as given on the command line.
+    pub url: String,
+    /// `device` or `master`.
+    pub role: String,
+    /// Maker.
+    pub vendor: String,
+    /// Product.
+    pub product: String,
+    /// Versions.
+    pub version: String,
+    /// Points of control and observation served.
+    pub pcos: Vec<String>,
+    /// `virtual` or `real`.
+    pub clock: String,
+    /// Resolution of the clock in nanoseconds.
+    pub resolution_ns: u64,
+    /// Uncertainty of a time stamp in nanoseconds.
+    pub uncertainty_ns: u64,
+    /// What it can be configured as, one text an offer.
+    pub offers: Vec<String>,
+}
+
+/// Conformance axis of a verdict, best first. Verdicts only worsen.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// Does not apply to this DUT.
+    NotApplicable,
+    /// As the standard asks.
+    Pass,
+    /// A should-level statement not met, or a tolerance made use of.
+    Remark,
+    /// Neither pass nor fail can be said.
+    Inconclusive,
+    /// Not as the standard asks.
+    Fail,
+}
+
+/// Execution axis of a verdict: did the case run as meant, and if not, who is at fault.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Execution {
+    /// Ran as meant.
+    Ok,
+    /// The DUT did not answer in time.
+    Timeout,
+    /// The DUT broke the contract of the adapter.
+    DutError,
+    /// Cable, port, path: the DUT was not reached.
+    RigError,
+    /// A fault of fsct itself.
+    ToolError,
+    /// Stopped before its end, or not begun.
+    Aborted,
+}
+
+/// Why a verdict is what it is. The first reason of a case decides, later ones only add.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Reason {
+    /// Verdict this reason leads to.
+    pub verdict: Verdict,
+    /// What kind of finding, as nested names a waiver can match: `oracle/signature`, `expect/DCommErr`, `liveness`,
+    /// `dut/timeout`.
+    pub kind: String,
+    /// Clause of the standard in the edition of the case, with table or transition: `11.5.3 Table 40 T25`.
+    pub clause: String,
+    /// Step of the case, from 1; 0 is the start condition, one past the last is the liveness check at the end.
+    pub step: usize,
+    /// Position in the trace of the exchange that shows it.
+    pub entry: Option<usize>,
+    /// What was expected, as text.
+    pub expected: String,
+    /// What was observed, as text (may hold text from the DUT: escape it).
+    pub observed: String,
+}
+
+/// One executed case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CaseRecord {
+    /// Unique: id and sweep, `FSD-0231[edition=iec2022,mode=crc16,pd=3,flip=17]`.
+    pub key: String,
+    /// Stable id.
+    pub id: String,
+    /// Suite it stands in.
+    pub suite: String,
+    /// What it shows.
+    pub title: String,
+    /// File and line of the case.
+    pub place: String,
+    /// Values of the sweep, in order of the key.
+    pub sweep: Vec<(String, String)>,
+    /// Edition, mode and sizes in force: needed to decode the trace.
+    pub variant: VariantInfo,
+    /// Requirements it judges.
+    pub requirements: Vec<RequirementRef>,
+    /// Conformance.
+    pub verdict: Verdict,
+    /// Execution.
+    pub execution: Execution,
+    /// Why; empty for a plain pass.
+    pub reasons: Vec<Reason>,
+    /// Tolerances made use of: id, then what happened.
+    pub tolerances: BTreeMap<String, String>,
+    /// Transitions the DUT went through, `T22` to count.
+    pub transitions: BTreeMap<String, u64>,
+    /// Start condition.
+    pub start: String,
+    /// Steps with their expectations; index 0 is the start condition, the last is the liveness check.
+    pub steps: Vec<StepRecord>,
+    /// What crossed the boundary, in order.
+    pub trace: Vec<Entry>,
+    /// Entries left out of the middle of the trace because it was too long.
+    pub elided: u64,
+    /// Duration on the clock of the DUT, in nanoseconds.
+    pub duration_ns: u64,
+    /// Command line that runs this case alone.
+    pub replay: String,
+}
+
+/// Edition, mode and process data sizes of a case.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct VariantInfo {
+    /// `v1.1` or `iec2022`.
+    pub edition: String,
+    /// `crc16` or `crc32`.
+    pub mode: String,
+    /// Octets of FS-PDout.
+    pub pd_out: u8,
+    /// Octets of FS-PDin.
+    pub pd_in: u8,
+    /// `true` when PIXIT says that the start value of the signature is a leading octet (A02).
+    pub leading_octet: bool,
+}
+
+/// A requirement a case refers to.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct RequirementRef {
+    /// Id in the ledger.
+    pub id: String,
+    /// Clause in the edition of the case.
+    pub clause: String,
+    /// `shall`, `should`, `may` or `fact`.
+    pub level: String,
+}
+
+/// One step of a case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StepRecord {
+    /// What was done, as a line of the case language.
+    pub text: String,
+    /// Whether the step was reached.
+    pub executed: bool,
+    /// First and one past the last entry of the trace that belong to it.
+    pub entries: (usize, usize),
+    /// Its expectations, as far as they were judged.
+    pub checks: Vec<Check>,
+}
+
+/// One judged expectation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Check {
+    /// What was looked at: `SDset`, `app.PDout_D`.
+    pub key: String,
+    /// Value asked for.
+    pub expected: String,
+    /// Value found.
+    pub observed: String,
+    /// Whether they agree.
+    pub met: bool,
+}
+
+/// One thing that crossed the boundary to the DUT. Octets are upper-case hexadecimal without spaces.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Entry {
+    /// Nanoseconds on the clock of the DUT.
+    pub at: u64,
+    /// How many times in a row; equal exchanges that caused nothing else are counted, not repeated.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub count: u64,
+    /// What.
+    pub what: What,
+    /// Transitions of the DUT at this point, in order: `["T24", "T22", "T23"]`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub via: Vec<String>,
+    /// What the tester did on purpose here: "bit 17 inverted"; empty for the usual.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub note: String,
+}
+
+fn one() -> u64 {
+    1
+}
+
+fn is_one(count: &u64) -> bool {
+    *count == 1
+}
+
+/// What crossed the boundary.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum What {
+    /// Process data: what the DUT received (`None`: lost) and what it presented (`None`: no process data).
+    Exchange {
+        /// Port, from 1.
+        port: u8,
+        /// To the DUT.
+        sent: Option<String>,
+        /// From the DUT.
+        got: Option<String>,
+    },
+    /// Application service set by the upper tester.
+    Set {
+        /// The standard's spelling.
+        service: String,
+        /// Hexadecimal.
+        value: String,
+    },
+    /// Application service reported by the DUT.
+    Service {
+        /// The standard's spelling.
+        service: String,
+        /// Hexadecimal.
+        value: String,
+    },
+    /// Supply.
+    Power {
+        /// On or off.
+        on: bool,
+    },
+    /// On-request data with the answer.
+    Acyclic {
+        /// `read 0x4201.0` or `write 0x4202.0 = 00..`.
+        request: String,
+        /// `= 00..`, `written`, `refused 0x8030`, `unsupported`.
+        answer: String,
+    },
+    /// An Event.
+    Event {
+        /// EventCode.
+        code: u16,
+        /// EventQualifier.
+        qualifier: u8,
+    },
+}
+
+/// The end of a complete run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Footer {
+    /// Expanded cases recorded.
+    pub cases: usize,
+    /// `true` when the run was stopped by the user.
+    pub interrupted: bool,
+}
