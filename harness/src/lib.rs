@@ -1,1 +1,20 @@
-//! placeholder
+//! fsct: conformance tests for IO-Link Safety.
+//!
+//! load -> plan -> execute -> judge -> record. Each stage is a function from one plain type to the next.
+
+pub mod campaign;
+pub mod case;
+pub mod engine;
+pub mod expect;
+pub mod ledger;
+pub mod library;
+pub mod oracle;
+pub mod partner;
+pub mod plan;
+pub mod problem;
+pub mod profile;
+pub mod session;
+pub mod tester;
+pub mod trace;
+pub mod tree;
+pub mod yaml;

@@ -1,0 +1,346 @@
+//! The reference FS-Device as a [`Dut`]: power, link image, on-request data, application services and clock around
+//! the [`Scl`].
+//!
+//! `Configure` makes it another device, fresh from the factory; a power cycle keeps the parameter memory and nothing
+//! else. With both clocks an expiry of DTimer takes effect at the instant it was due, and before anything else that
+//! happens at that instant.
+
+use crate::parameters::{Parameters, Verified, Written, error_type, event_code};
+use crate::scl::{Config, Inputs, Outputs, Scl};
+use crate::{Mutant, Options};
+use fsct_adapters::{
+    Clock, ClockKind, Description, Dut, DutError, Observation, Octets, Offer, Pco, Role, Seen, Service, Stimulus,
+    Variant,
+};
+use fsct_protocol::spdu::Pd;
+use fsct_protocol::{Edition, ProtMode};
+use std::time::Instant;
+
+/// The one port of an FS-Device.
+pub(crate) const PORT: u8 = 1;
+
+/// EventQualifier of an Error that appears, from the application of a device (base standard).
+const ERROR_APPEARS: u8 = 0xF4;
+
+/// How far a time stamp of the real clock may be off: a stimulus may wait that long inside the process.
+const REAL_UNCERTAINTY_NS: u64 = 100_000;
+
+/// What the device is before any `Configure`.
+pub(crate) const DEFAULT_VARIANT: Variant =
+    Variant { edition: Edition::Iec2022, mode: ProtMode::Crc16, pd_out: 3, pd_in: 3 };
+
+/// The reference FS-Device.
+#[derive(Debug)]
+pub struct FsDevice {
+    options: Options,
+    variant: Variant,
+    parameters: Parameters,
+    /// `None` while the power is off.
+    session: Option<Session>,
+    now: u64,
+    /// Where the real clock began; `None` with a virtual clock.
+    began: Option<Instant>,
+}
+
+/// What does not survive a power cycle.
+#[derive(Debug)]
+struct Session {
+    /// `None` until FSP_VerifyRecord was found as stored.
+    scl: Option<Scl>,
+    /// An FSP_VerifyRecord for the stored blocks was received, as stored or deviating.
+    record_received: bool,
+    /// Process data have been exchanged.
+    operate: bool,
+    inputs: Inputs,
+    /// Outputs as last reported.
+    outputs: Outputs,
+    images: Pipeline,
+}
+
+impl FsDevice {
+    /// A device with its power off, at time 0 of its clock.
+    pub fn new(options: Options) -> FsDevice {
+        FsDevice {
+            options,
+            variant: DEFAULT_VARIANT,
+            parameters: Parameters::factory(DEFAULT_VARIANT),
+            session: None,
+            now: 0,
+            began: (options.clock == ClockKind::Real).then(Instant::now),
+        }
+    }
+
+    /// A device without fault or latency that lives in real time.
+    pub fn real_time() -> FsDevice {
+        FsDevice::new(Options { clock: ClockKind::Real, ..Options::default() })
+    }
+
+    fn carry_out(&mut self, stimulus: &Stimulus, seen: &mut Sink<'_>) {
+        if let Some(began) = &self.began {
+            self.advance_to(u64::try_from(began.elapsed().as_nanos()).unwrap_or(u64::MAX), seen);
+        }
+        seen.at = self.now;
+        match stimulus {
+            Stimulus::Configure(variant) => self.configure(*variant, seen),
+            Stimulus::Power(true) => self.power_on(seen),
+            Stimulus::Power(false) => self.session = None,
+            Stimulus::Exchange { port: PORT, octets } => self.exchange(octets.as_ref(), seen),
+            Stimulus::Exchange { port, .. } => {
+                seen.push(Seen::Unsupported);
+                seen.push(Seen::Image { port: *port, octets: None });
+            }
+            Stimulus::Read { index, subindex } => seen.push(match self.read(*index, *subindex) {
+                Ok(value) => Seen::Value(value),
+                Err(error) => Seen::Refused { error },
+            }),
+            Stimulus::Write { index, subindex, data } => self.write(*index, *subindex, data, seen),
+            Stimulus::Set { port: PORT, service, value } if self.set(*service, value) => {}
+            Stimulus::Advance { ns } if self.began.is_none() => self.advance_to(self.now.saturating_add(*ns), seen),
+            Stimulus::Set { .. } | Stimulus::Advance { .. } | Stimulus::Other { .. } => seen.push(Seen::Unsupported),
+        }
+    }
+
+    fn configure(&mut self, variant: Variant, seen: &mut Sink<'_>) {
+        if self.session.is_some() || !offers().iter().any(|offer| offer.covers(variant)) {
+            return seen.push(Seen::Unsupported);
+        }
+        self.variant = variant;
+        self.parameters = Parameters::factory(variant);
+    }
+
+    fn power_on(&mut self, seen: &mut Sink<'_>) {
+        if self.session.is_some() {
+            return;
+        }
+        let session = Session::new(self.variant, self.options);
+        session.report(None, seen);
+        seen.push_service(Service::SclFault, Octets::bit(false));
+        self.session = Some(session);
+    }
+
+    fn exchange(&mut self, received: Option<&Octets>, seen: &mut Sink<'_>) {
+        let octets = self.session.as_mut().map(|session| {
+            if !session.operate {
+                session.operate = true;
+                if self.variant.edition == Edition::Iec2022 && !session.record_received {
+                    seen.push_error(event_code::NO_VERIFY_RECORD);
+                }
+            }
+            session.exchange(received, self.now, seen)
+        });
+        seen.push(Seen::Image { port: PORT, octets });
+    }
+
+    fn read(&self, index: u16, subindex: u8) -> Result<Vec<u8>, u16> {
+        if self.session.is_none() {
+            return Err(error_type::COM_ERR);
+        }
+        self.parameters.read(index, subindex)
+    }
+
+    fn write(&mut self, index: u16, subindex: u8, data: &[u8], seen: &mut Sink<'_>) {
+        let Some(session) = &mut self.session else {
+            return seen.push(Seen::Refused { error: error_type::COM_ERR });
+        };
+        let written = match self.parameters.write(index, subindex, data, session.operate) {
+            Ok(written) => written,
+            Err(error) => return seen.push(Seen::Refused { error }),
+        };
+        seen.push(Seen::Written);
+        match written {
+            Written::Nothing => {}
+            Written::Block => session.verified(None, false),
+            Written::Verified(verified) => {
+                session.verified(Some(start(self.variant, verified, self.options.mutant)), true);
+            }
+            Written::Deviating(events) => {
+                session.verified(None, true);
+                events.into_iter().flatten().for_each(|code| seen.push_error(code));
+            }
+        }
+    }
+
+    /// Whether the service was taken.
+    fn set(&mut self, service: Service, value: &Octets) -> bool {
+        let Some(session) = &mut self.session else { return false };
+        match (service, value.as_slice()) {
+            (Service::PdinD, octets) if octets.len() == usize::from(self.variant.pd_in) => {
+                Pd::new(octets).map(|pd| session.inputs.pd_in = pd).is_some()
+            }
+            (Service::SdsetDs, [bit @ (0 | 1)]) => {
+                session.inputs.sd_set_ds = *bit == 1;
+                true
+            }
+            _ => false,
+        }
+    }
+
+    fn advance_to(&mut self, now: u64, seen: &mut Sink<'_>) {
+        if let Some(session) = &mut self.session {
+            session.expire(now, seen);
+        }
+        self.now = now;
+    }
+}
+
+impl Dut for FsDevice {
+    fn hello(&mut self) -> Result<Description, DutError> {
+        let uncertainty_ns = if self.began.is_some() { REAL_UNCERTAINTY_NS } else { 0 };
+        Ok(describe("reference FS-Device", Clock { kind: self.options.clock, resolution_ns: 1, uncertainty_ns }))
+    }
+
+    fn apply(&mut self, stimuli: &[Stimulus], observed: &mut Vec<Observation>) -> Result<(), DutError> {
+        for (position, stimulus) in (0..).zip(stimuli) {
+            self.carry_out(stimulus, &mut Sink { observed, stimulus: position, at: self.now });
+        }
+        Ok(())
+    }
+}
+
+impl Session {
+    fn new(variant: Variant, options: Options) -> Session {
+        Session {
+            scl: None,
+            record_received: false,
+            operate: false,
+            inputs: Inputs { pd_in: Pd::safe(variant.pd_in.into()), sd_set_ds: false },
+            outputs: Outputs::initial(variant.pd_out),
+            images: Pipeline::new(Octets::zero(variant.mode.spdu_octets(variant.pd_in.into())), options.latency),
+        }
+    }
+
+    fn verified(&mut self, scl: Option<Scl>, record_received: bool) {
+        self.scl = scl;
+        self.record_received = record_received;
+    }
+
+    fn exchange(&mut self, received: Option<&Octets>, now: u64, seen: &mut Sink<'_>) -> Octets {
+        let Some(scl) = &mut self.scl else { return self.images.silent };
+        if let Some(octets) = received {
+            scl.received(now, octets.as_slice(), &self.inputs);
+        }
+        let image = scl.answer().and_then(Octets::new).unwrap_or(self.images.silent);
+        self.report_changes(seen);
+        self.images.pass(image)
+    }
+
+    fn expire(&mut self, now: u64, seen: &mut Sink<'_>) {
+        let Some(scl) = &mut self.scl else { return };
+        if let Some(due) = scl.expire(now, &self.inputs) {
+            seen.at = due;
+            self.report_changes(seen);
+        }
+    }
+
+    fn report_changes(&mut self, seen: &mut Sink<'_>) {
+        let Some(scl) = &self.scl else { return };
+        let new = *scl.outputs();
+        if new != self.outputs {
+            let old = std::mem::replace(&mut self.outputs, new);
+            self.report(Some(&old), seen);
+        }
+    }
+
+    /// Reports each output that is not as in `old`, or all of them.
+    fn report(&self, old: Option<&Outputs>, seen: &mut Sink<'_>) {
+        let new = &self.outputs;
+        if old.is_none_or(|old| old.pd_out != new.pd_out) {
+            seen.push_service(Service::PdoutD, Octets::new(new.pd_out.octets()).unwrap_or_default());
+        }
+        if old.is_none_or(|old| old.set_sd_dc != new.set_sd_dc) {
+            seen.push_service(Service::SetsdDc, Octets::bit(new.set_sd_dc));
+        }
+        if old.is_none_or(|old| old.ch_f_ack_req_dc != new.ch_f_ack_req_dc) {
+            seen.push_service(Service::ChfackreqDc, Octets::bit(new.ch_f_ack_req_dc));
+        }
+    }
+}
+
+/// The answer image on its way to the line: what is put in comes out `latency` exchanges later, zeros before.
+#[derive(Debug)]
+struct Pipeline {
+    /// The image of a device whose SCL does not send.
+    silent: Octets,
+    images: [Octets; Options::MAX_LATENCY as usize],
+    latency: usize,
+    next: usize,
+}
+
+impl Pipeline {
+    fn new(silent: Octets, latency: u8) -> Pipeline {
+        Pipeline { silent, images: [silent; Options::MAX_LATENCY as usize], latency: latency.into(), next: 0 }
+    }
+
+    fn pass(&mut self, image: Octets) -> Octets {
+        let latency = self.latency;
+        match self.images.get_mut(..latency).and_then(|used| used.get_mut(self.next)) {
+            None => image,
+            Some(oldest) => {
+                self.next = (self.next + 1) % latency;
+                std::mem::replace(oldest, image)
+            }
+        }
+    }
+}
+
+/// Where observations go, with the stimulus and the time they belong to.
+pub(crate) struct Sink<'a> {
+    pub(crate) observed: &'a mut Vec<Observation>,
+    pub(crate) stimulus: u16,
+    pub(crate) at: u64,
+}
+
+impl Sink<'_> {
+    pub(crate) fn push(&mut self, seen: Seen) {
+        self.observed.push(Observation { stimulus: self.stimulus, at: self.at, seen });
+    }
+
+    pub(crate) fn push_service(&mut self, service: Service, value: Octets) {
+        self.push(Seen::Service { port: PORT, service, value });
+    }
+
+    fn push_error(&mut self, code: u16) {
+        self.push(Seen::Event { code, qualifier: ERROR_APPEARS });
+    }
+}
+
+/// FSP parameterization of the SCL. This device is ready as soon as its parameters are: T20 follows at once.
+fn start(variant: Variant, verified: Verified, mutant: Option<Mutant>) -> Scl {
+    let mut scl = Scl::new(Config {
+        mode: variant.mode,
+        pd_out: variant.pd_out,
+        port: verified.port,
+        watchdog_ms: verified.watchdog_ms,
+        mutant,
+    });
+    scl.system_start_ok();
+    scl
+}
+
+/// What this crate's devices say of themselves.
+pub(crate) fn describe(product: &str, clock: Clock) -> Description {
+    Description {
+        role: Role::Device,
+        ports: 1,
+        pcos: vec![Pco::Power, Pco::Link, Pco::Acyclic, Pco::App, Pco::Clock],
+        offers: offers().to_vec(),
+        clock,
+        vendor: "fsct".to_owned(),
+        product: product.to_owned(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+    }
+}
+
+/// Both editions, both modes, every size.
+pub(crate) fn offers() -> [Offer; 4] {
+    let offer = |edition, mode: ProtMode| {
+        let sizes = (0, mode.max_pd() as u8);
+        Offer { edition, mode, pd_out: sizes, pd_in: sizes }
+    };
+    [
+        offer(Edition::V1_1, ProtMode::Crc16),
+        offer(Edition::V1_1, ProtMode::Crc32),
+        offer(Edition::Iec2022, ProtMode::Crc16),
+        offer(Edition::Iec2022, ProtMode::Crc32),
+    ]
+}

@@ -1,0 +1,118 @@
+//! What can be asked of the reference FS-Device in its address: `inproc:reference-device?mutant=NAME&latency=2`.
+
+use crate::Mutant;
+use fsct_adapters::ClockKind;
+
+/// How the reference FS-Device is to behave.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// `mutant=NAME`: a deliberate fault.
+    pub mutant: Option<Mutant>,
+    /// `latency=N`: exchanges until an answer stands in the image, 0..[`Options::MAX_LATENCY`]. Services do not wait.
+    pub latency: u8,
+    /// `clock=virtual` or `clock=real`: moved by the harness alone, or time itself.
+    pub clock: ClockKind,
+}
+
+impl Default for Options {
+    fn default() -> Options {
+        Options { mutant: None, latency: 0, clock: ClockKind::Virtual }
+    }
+}
+
+/// An option that cannot be understood. Each text is one sentence and quotes what was given.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum OptionError {
+    /// No option of this name.
+    #[error("the reference device has no option {given:?}, did you mean {nearest:?}?")]
+    UnknownOption {
+        /// What was given.
+        given: String,
+        /// The known name most like it.
+        nearest: &'static str,
+    },
+    /// No mutant of this name.
+    #[error("the reference device has no mutant {given:?}, did you mean {nearest:?}?")]
+    UnknownMutant {
+        /// What was given.
+        given: String,
+        /// The known name most like it.
+        nearest: &'static str,
+    },
+    /// No clock of this name.
+    #[error("the reference device has no clock {given:?}, did you mean {nearest:?}?")]
+    UnknownClock {
+        /// What was given.
+        given: String,
+        /// The known name most like it.
+        nearest: &'static str,
+    },
+    /// A latency that is no number or too great.
+    #[error("the latency of the reference device is a number of exchanges from 0 to {max}, not {given:?}", max = Options::MAX_LATENCY)]
+    BadLatency {
+        /// What was given.
+        given: String,
+    },
+    /// The same option twice.
+    #[error("the option {name:?} of the reference device is given twice")]
+    Repeated {
+        /// Which.
+        name: &'static str,
+    },
+}
+
+impl Options {
+    /// The greatest latency in exchanges.
+    pub const MAX_LATENCY: u8 = 8;
+
+    const NAMES: [&'static str; 3] = ["mutant", "latency", "clock"];
+    const CLOCKS: [&'static str; 2] = ["virtual", "real"];
+
+    /// Reads the decoded pairs of a query, in any order.
+    ///
+    /// # Errors
+    /// [`OptionError`] for the first pair that names no option, gives it a value it cannot have, or repeats it.
+    pub fn from_query(query: &[(String, String)]) -> Result<Options, OptionError> {
+        let mut options = Options::default();
+        let mut given = Vec::new();
+        for (name, value) in query {
+            let Some(known) = Options::NAMES.into_iter().find(|known| known == name) else {
+                return Err(OptionError::UnknownOption { given: name.clone(), nearest: nearest(name, Options::NAMES) });
+            };
+            if given.contains(&known) {
+                return Err(OptionError::Repeated { name: known });
+            }
+            given.push(known);
+            match known {
+                "mutant" => options.mutant = Some(mutant(value)?),
+                "latency" => options.latency = latency(value)?,
+                _ => options.clock = clock(value)?,
+            }
+        }
+        Ok(options)
+    }
+}
+
+fn mutant(value: &str) -> Result<Mutant, OptionError> {
+    Mutant::from_name(value).ok_or_else(|| OptionError::UnknownMutant {
+        given: value.to_owned(),
+        nearest: nearest(value, Mutant::ALL.map(Mutant::name)),
+    })
+}
+
+fn latency(value: &str) -> Result<u8, OptionError> {
+    let number = value.parse().ok().filter(|number| *number <= Options::MAX_LATENCY);
+    number.ok_or_else(|| OptionError::BadLatency { given: value.to_owned() })
+}
+
+fn clock(value: &str) -> Result<ClockKind, OptionError> {
+    match value {
+        "virtual" => Ok(ClockKind::Virtual),
+        "real" => Ok(ClockKind::Real),
+        _ => Err(OptionError::UnknownClock { given: value.to_owned(), nearest: nearest(value, Options::CLOCKS) }),
+    }
+}
+
+fn nearest<const N: usize>(given: &str, known: [&'static str; N]) -> &'static str {
+    known.into_iter().min_by_key(|name| strsim::damerau_levenshtein(given, name)).unwrap_or_default()
+}

@@ -1,0 +1,349 @@
+//! The on-request data of the reference FS-Device: the Indices of Table A.1 and the checks at FSP_VerifyRecord.
+//!
+//! The authenticity and protocol blocks survive power cycles. The checks are the same whether FSP_TechParCRC is 0 or not:
+//! 11.5.7 lets no deviating block start the SCL, and Table E.2 (v1.1: E.3) no default authenticity. This device holds
+//! no technology parameters (FST), so their signature is compared with the stored one alone.
+
+use fsct_adapters::Variant;
+use fsct_protocol::Edition;
+use fsct_protocol::crc::{crc16, crc32};
+use fsct_protocol::fsp::{Authenticity, INDEX_AUTHENTICITY, INDEX_PROTOCOL, INDEX_VERIFY, Protocol};
+use fsct_protocol::spdu::Port;
+
+/// ErrorTypes of the base standard: why a read or write is refused.
+pub mod error_type {
+    /// The Index does not exist.
+    pub const INDEX_NOT_AVAILABLE: u16 = 0x8011;
+    /// The Subindex does not exist.
+    pub const SUBINDEX_NOT_AVAILABLE: u16 = 0x8012;
+    /// Not readable, or not writable.
+    pub const ACCESS_DENIED: u16 = 0x8023;
+    /// A value is not permitted, or the signature of a block is wrong.
+    pub const VALUE_OUT_OF_RANGE: u16 = 0x8030;
+    /// More octets than the object has.
+    pub const LENGTH_OVERRUN: u16 = 0x8033;
+    /// Fewer octets than the object has.
+    pub const LENGTH_UNDERRUN: u16 = 0x8034;
+    /// Not in this state of the device.
+    pub const FUNCTION_UNAVAILABLE: u16 = 0x8036;
+    /// No communication: the device has no power.
+    pub const COM_ERR: u16 = 0x1000;
+}
+
+/// EventCodes of Table B.1 at start-up; all are Errors.
+pub mod event_code {
+    /// Unexpected authentication code.
+    pub const AUTHENTICITY: u16 = 0xB003;
+    /// Unexpected authentication port.
+    pub const PORT: u16 = 0xB004;
+    /// Incorrect FSP_AuthentCRC.
+    pub const AUTHENT_CRC: u16 = 0xB005;
+    /// Incorrect FSP_ProtParCRC; stands for a version, mode or watchdog other than the stored one too.
+    pub const PROT_PAR_CRC: u16 = 0xB006;
+    /// Incorrect FSP_TechParCRC.
+    pub const TECH_PAR_CRC: u16 = 0xB007;
+    /// Incorrect FSP_IO_StructCRC.
+    pub const IO_STRUCT_CRC: u16 = 0xB008;
+    /// Watchdog time out of specification.
+    pub const WATCHDOG: u16 = 0xB009;
+    /// No FSP_VerifyRecord received (iec2022).
+    pub const NO_VERIFY_RECORD: u16 = 0xB00A;
+}
+
+/// Indices of Table A.1 beside those of the FSP records.
+mod index {
+    /// FS_Password (v1.1), FSP_TimeToReady (iec2022).
+    pub const TIME_TO_READY: u16 = 0x4210;
+    /// Reset_FS_Password (v1.1), FSP_MinShutDownTime (iec2022).
+    pub const MIN_SHUT_DOWN_TIME: u16 = 0x4211;
+    /// FSP_ParamDescCRC.
+    pub const PARAM_DESC_CRC: u16 = 0x4212;
+    /// FSP_WCDT (iec2022).
+    pub const WCDT: u16 = 0x4213;
+    /// FSP_OFDT (iec2022).
+    pub const OFDT: u16 = 0x4214;
+}
+
+const PROT_VERSION: u8 = 0x01;
+const DEFAULT_WATCHDOG_MS: u16 = 100;
+const WATCHDOG_RANGE_MS: (u16, u16) = (1, u16::MAX);
+/// The signature over no technology parameters at all is 0, and 0 becomes 1 (A.2.8). Not 0 as Table G.1 asks.
+const FACTORY_TECH_PAR_CRC: u32 = 1;
+/// In units of 10 ms: 500 ms.
+const TIME_TO_READY: u16 = 50;
+/// In units of 10 ms: 1 s.
+const MIN_SHUT_DOWN_TIME: u16 = 100;
+const WCDT_MS: u16 = 10;
+const OFDT_MS: u16 = 20;
+const PASSWORD_OCTETS: usize = 32;
+/// Octets of each Subindex of 0x4200, from 1.
+const AUTHENTICITY_ITEMS: [usize; 4] = [4, 4, 1, 2];
+/// Octets of each Subindex of 0x4201, from 1.
+const PROTOCOL_ITEMS: [usize; 6] = [1, 1, 2, 2, 4, 2];
+const AUTHENTICITY_OCTETS: usize = 11;
+const VERIFY_OCTETS: usize = 23;
+
+/// What FSP_VerifyRecord gives to the SCL when it is as stored.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Verified {
+    /// FSP_Port.
+    pub port: Port,
+    /// FSP_Watchdog in milliseconds, not 0.
+    pub watchdog_ms: u16,
+}
+
+/// What a write that was carried out means to the rest of the device.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Written {
+    /// A stored block was replaced: an earlier verification holds no more.
+    Block,
+    /// FSP_VerifyRecord is as stored.
+    Verified(Verified),
+    /// FSP_VerifyRecord deviates: the EventCode for its authenticity and the one for its protocol block.
+    Deviating([Option<u16>; 2]),
+    /// Nothing.
+    Nothing,
+}
+
+/// The parameter memory.
+#[derive(Clone, Debug)]
+pub struct Parameters {
+    variant: Variant,
+    authenticity: Authenticity,
+    protocol: Protocol,
+}
+
+impl Parameters {
+    /// The factory setting (Table G.1) of a device that is this variant.
+    pub fn factory(variant: Variant) -> Parameters {
+        Parameters {
+            variant,
+            authenticity: Authenticity { authenticity_1: 0, authenticity_2: 0, port: 0 },
+            protocol: Protocol {
+                version: PROT_VERSION,
+                mode: variant.mode.code(),
+                watchdog_ms: DEFAULT_WATCHDOG_MS,
+                io_struct_crc: io_struct_crc(variant),
+                tech_par_crc: FACTORY_TECH_PAR_CRC,
+            },
+        }
+    }
+
+    /// Reads an Index; Subindex 0 is the whole object.
+    ///
+    /// # Errors
+    /// An ErrorType, see [`error_type`].
+    pub fn read(&self, index: u16, subindex: u8) -> Result<Vec<u8>, u16> {
+        let edition = self.variant.edition;
+        match index {
+            INDEX_AUTHENTICITY => item(&self.authenticity.to_octets(), &AUTHENTICITY_ITEMS, subindex),
+            INDEX_PROTOCOL => item(&self.protocol.to_octets(), &PROTOCOL_ITEMS, subindex),
+            INDEX_VERIFY => Err(error_type::ACCESS_DENIED),
+            index::PARAM_DESC_CRC => {
+                let described = param_desc(self.variant.mode.code(), WATCHDOG_RANGE_MS, io_struct_crc(self.variant));
+                match edition {
+                    Edition::V1_1 => item(&crc16(0, &described).to_be_bytes(), &[], subindex),
+                    Edition::Iec2022 => item(&crc32(0, &described).to_be_bytes(), &[], subindex),
+                }
+            }
+            index::TIME_TO_READY | index::MIN_SHUT_DOWN_TIME if edition == Edition::V1_1 => {
+                Err(error_type::ACCESS_DENIED)
+            }
+            index::TIME_TO_READY => item(&TIME_TO_READY.to_be_bytes(), &[], subindex),
+            index::MIN_SHUT_DOWN_TIME => item(&MIN_SHUT_DOWN_TIME.to_be_bytes(), &[], subindex),
+            index::WCDT if edition == Edition::Iec2022 => item(&WCDT_MS.to_be_bytes(), &[], subindex),
+            index::OFDT if edition == Edition::Iec2022 => item(&OFDT_MS.to_be_bytes(), &[], subindex),
+            _ => Err(error_type::INDEX_NOT_AVAILABLE),
+        }
+    }
+
+    /// Writes an Index; `operate` says that process data have been exchanged since power-on, from when on the FSP
+    /// records stand. Blocks are written whole, and a refused write changes nothing.
+    ///
+    /// # Errors
+    /// An ErrorType, see [`error_type`].
+    pub fn write(&mut self, index: u16, subindex: u8, data: &[u8], operate: bool) -> Result<Written, u16> {
+        match index {
+            INDEX_AUTHENTICITY => {
+                block(subindex, data, &AUTHENTICITY_ITEMS)?;
+                before(operate)?;
+                self.write_authenticity(data)
+            }
+            INDEX_PROTOCOL => {
+                block(subindex, data, &PROTOCOL_ITEMS)?;
+                before(operate)?;
+                self.write_protocol(data)
+            }
+            INDEX_VERIFY => {
+                whole(subindex)?;
+                of_length(data, VERIFY_OCTETS, VERIFY_OCTETS)?;
+                before(operate)?;
+                Ok(self.verify(data))
+            }
+            index::TIME_TO_READY | index::MIN_SHUT_DOWN_TIME if self.variant.edition == Edition::V1_1 => {
+                // Passwords guard technology parameters, of which there are none: checked, not kept.
+                whole(subindex)?;
+                of_length(data, 1, PASSWORD_OCTETS)?;
+                if data.is_ascii() { Ok(Written::Nothing) } else { Err(error_type::VALUE_OUT_OF_RANGE) }
+            }
+            _ => {
+                self.read(index, subindex)?;
+                Err(error_type::ACCESS_DENIED)
+            }
+        }
+    }
+
+    fn write_authenticity(&mut self, data: &[u8]) -> Result<Written, u16> {
+        let block = Authenticity::from_octets(data).map_err(|_| error_type::VALUE_OUT_OF_RANGE)?;
+        // Port 0 is not accepted (A.2.2), except with authenticity 0: that resets the block for reuse elsewhere.
+        if block.port == 0 && !unassigned(&block) {
+            return Err(error_type::VALUE_OUT_OF_RANGE);
+        }
+        self.authenticity = block;
+        Ok(Written::Block)
+    }
+
+    fn write_protocol(&mut self, data: &[u8]) -> Result<Written, u16> {
+        let block = Protocol::from_octets(data).map_err(|_| error_type::VALUE_OUT_OF_RANGE)?;
+        if !self.supports(&block) || block.watchdog_ms == 0 {
+            return Err(error_type::VALUE_OUT_OF_RANGE);
+        }
+        self.protocol = block;
+        Ok(Written::Block)
+    }
+
+    fn supports(&self, block: &Protocol) -> bool {
+        block.version == PROT_VERSION && block.mode == self.variant.mode.code()
+    }
+
+    fn verify(&self, record: &[u8]) -> Written {
+        let (authenticity, protocol) = record.split_at(AUTHENTICITY_OCTETS.min(record.len()));
+        let port = self.verify_authenticity(authenticity);
+        let watchdog_ms = self.verify_protocol(protocol);
+        match (port, watchdog_ms) {
+            (Ok(port), Ok(watchdog_ms)) => Written::Verified(Verified { port, watchdog_ms }),
+            (port, watchdog_ms) => Written::Deviating([port.err(), watchdog_ms.err()]),
+        }
+    }
+
+    /// FSP_Port of the record, or the EventCode of the first deviation.
+    fn verify_authenticity(&self, octets: &[u8]) -> Result<Port, u16> {
+        let block = Authenticity::from_octets(octets).map_err(|_| event_code::AUTHENT_CRC)?;
+        let stored = &self.authenticity;
+        let same = (block.authenticity_1, block.authenticity_2) == (stored.authenticity_1, stored.authenticity_2);
+        let port = Port::new(block.port).filter(|port| port.number() == stored.port);
+        match port {
+            _ if !same || unassigned(&block) => Err(event_code::AUTHENTICITY),
+            Some(port) => Ok(port),
+            None => Err(event_code::PORT),
+        }
+    }
+
+    /// FSP_Watchdog of the record, or the EventCode of the first deviation.
+    fn verify_protocol(&self, octets: &[u8]) -> Result<u16, u16> {
+        let block = Protocol::from_octets(octets).map_err(|_| event_code::PROT_PAR_CRC)?;
+        let checks = [
+            (block.watchdog_ms != 0, event_code::WATCHDOG),
+            (block.io_struct_crc == io_struct_crc(self.variant), event_code::IO_STRUCT_CRC),
+            (block.tech_par_crc == self.protocol.tech_par_crc, event_code::TECH_PAR_CRC),
+            (self.supports(&block) && block == self.protocol, event_code::PROT_PAR_CRC),
+        ];
+        match checks.into_iter().find(|(good, _)| !good) {
+            None => Ok(block.watchdog_ms),
+            Some((_, code)) => Err(code),
+        }
+    }
+}
+
+fn unassigned(block: &Authenticity) -> bool {
+    block.authenticity_1 == 0 && block.authenticity_2 == 0
+}
+
+/// The whole object for Subindex 0, one of its items for the others.
+fn item(octets: &[u8], items: &[usize], subindex: u8) -> Result<Vec<u8>, u16> {
+    let Some(before) = usize::from(subindex).checked_sub(1) else { return Ok(octets.to_vec()) };
+    let length = items.get(before).ok_or(error_type::SUBINDEX_NOT_AVAILABLE)?;
+    let start: usize = items.iter().take(before).sum();
+    Ok(octets.iter().skip(start).take(*length).copied().collect())
+}
+
+/// Whether this is a write of a whole block made up of `items`.
+fn block(subindex: u8, data: &[u8], items: &[usize]) -> Result<(), u16> {
+    let octets = items.iter().sum();
+    match usize::from(subindex) {
+        0 => of_length(data, octets, octets),
+        subindex if subindex <= items.len() => Err(error_type::ACCESS_DENIED),
+        _ => Err(error_type::SUBINDEX_NOT_AVAILABLE),
+    }
+}
+
+fn whole(subindex: u8) -> Result<(), u16> {
+    if subindex == 0 { Ok(()) } else { Err(error_type::SUBINDEX_NOT_AVAILABLE) }
+}
+
+fn of_length(data: &[u8], least: usize, most: usize) -> Result<(), u16> {
+    match data.len() {
+        length if length < least => Err(error_type::LENGTH_UNDERRUN),
+        length if length > most => Err(error_type::LENGTH_OVERRUN),
+        _ => Ok(()),
+    }
+}
+
+fn before(operate: bool) -> Result<(), u16> {
+    if operate { Err(error_type::FUNCTION_UNAVAILABLE) } else { Ok(()) }
+}
+
+/// FSP_IO_StructCRC of this variant (A.2.7): all process data are octets of eight Booleans each.
+pub fn io_struct_crc(variant: Variant) -> u16 {
+    let range = |pd: u8| variant.mode.spdu_octets(pd.into()) as u8;
+    let bits = |pd: u8| pd.saturating_mul(8);
+    let (pd_in, pd_out) = (variant.pd_in, variant.pd_out);
+    crc16(0, &[1, range(pd_in), bits(pd_in), pd_in, 0, 0, range(pd_out), bits(pd_out), pd_out, 0, 0])
+}
+
+/// The description of both blocks as FSP_ParamDescCRC covers it (Figure E.1), for one mode and the default watchdog.
+fn param_desc(mode: u8, watchdog_range_ms: (u16, u16), io_struct_crc: u16) -> [u8; 77] {
+    const TYPE_8: u8 = 1;
+    const TYPE_16: u8 = 2;
+    const TYPE_32: u8 = 3;
+    let [watchdog_1, watchdog_0] = DEFAULT_WATCHDOG_MS.to_be_bytes();
+    let [least_1, least_0] = watchdog_range_ms.0.to_be_bytes();
+    let [most_1, most_0] = watchdog_range_ms.1.to_be_bytes();
+    let [struct_1, struct_0] = io_struct_crc.to_be_bytes();
+    // Index and bit length; then of each item Subindex, bit offset, type, default and allowed values.
+    #[rustfmt::skip]
+    let described = [
+        0x42, 0x00, 0, 88,
+        1, 0, 56, TYPE_32, 0, 0, 0, 0,
+        2, 0, 24, TYPE_32, 0, 0, 0, 0,
+        3, 0, 16, TYPE_8, 0,
+        4, 0, 0, TYPE_16, 0, 0,
+        0x42, 0x01, 0, 96,
+        1, 0, 88, TYPE_8, PROT_VERSION, PROT_VERSION,
+        2, 0, 80, TYPE_8, mode, mode,
+        3, 0, 64, TYPE_16, watchdog_1, watchdog_0, least_1, least_0, most_1, most_0,
+        4, 0, 48, TYPE_16, struct_1, struct_0,
+        5, 0, 16, TYPE_32, 0, 0, 0, 0,
+        6, 0, 0, TYPE_16, 0, 0,
+    ];
+    described
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fsct_protocol::ProtMode;
+
+    #[test]
+    fn param_desc_crc_is_that_of_the_sample_iodds() {
+        assert_eq!(crc32(0, &param_desc(2, (100, 5000), 0x9A28)), 1_860_635_738);
+        assert_eq!(crc16(0, &param_desc(1, (100, 5000), 5115)), 13_807);
+    }
+
+    #[test]
+    fn io_struct_crc_of_a_trailer_alone() {
+        let variant = |mode| Variant { edition: Edition::V1_1, mode, pd_out: 0, pd_in: 0 };
+        assert_eq!(io_struct_crc(variant(ProtMode::Crc16)), 0xDEC1);
+        assert_eq!(io_struct_crc(variant(ProtMode::Crc32)), 0x5712);
+    }
+}

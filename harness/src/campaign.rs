@@ -1,0 +1,355 @@
+//! A whole run: connect, preflight, one case after the other, each recorded before the next begins.
+
+use crate::engine::{Engine, Outcome, execution};
+use crate::library::Library;
+use crate::oracle::{DeviceOracle, Mask, Setup};
+use crate::plan::{Plan, Planned};
+use crate::profile::Profile;
+use crate::session::Session;
+use crate::tester::Tester;
+use fsct_adapters::{Description, Dut, DutError, Observation, Pco, Seen, Stimulus, Variant};
+use fsct_protocol::crc::Reading;
+use fsct_reports::record::{CaseRecord, DutInfo, Execution, Reason, RequirementRef, StepRecord, VariantInfo, Verdict};
+use rand_pcg::Pcg64Mcg;
+use rand_pcg::rand_core::SeedableRng;
+use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// After this many cases in a row that lost the DUT, the rest is not tried.
+const GIVE_UP: usize = 3;
+/// A kind of stimulus nobody knows.
+const MADE_UP: u8 = 0xEE;
+
+/// A DUT that has said hello and passed the preflight.
+pub struct Bench {
+    /// The connection.
+    pub dut: Box<dyn Dut>,
+    /// What it says of itself.
+    pub description: Description,
+}
+
+impl Bench {
+    /// Says hello and checks that the DUT tells what it does not serve: a made-up stimulus has to be answered unsupported.
+    ///
+    /// # Errors
+    /// [`DutError`] when it does not.
+    pub fn greet(mut dut: Box<dyn Dut>) -> Result<Bench, DutError> {
+        let description = dut.hello()?;
+        let mut observed = Vec::new();
+        dut.apply(&[Stimulus::Other { kind: MADE_UP, octets: vec![0x5A] }], &mut observed)?;
+        match observed.as_slice() {
+            [Observation { seen: Seen::Unsupported, .. }] => Ok(Bench { dut, description }),
+            _ => Err(DutError::Contract {
+                what:
+                    "a stimulus that does not exist was not answered `unsupported`, so its other answers mean nothing"
+                        .to_owned(),
+            }),
+        }
+    }
+
+    /// Makes the DUT the variant a case needs, without supply.
+    fn configure(&mut self, variant: Variant) -> Result<(), DutError> {
+        let mut observed = Vec::new();
+        let power = self.description.pcos.contains(&Pco::Power);
+        let mut stimuli = Vec::new();
+        if power {
+            stimuli.push(Stimulus::Power(false));
+        }
+        stimuli.push(Stimulus::Configure(variant));
+        self.dut.apply(&stimuli, &mut observed)?;
+        let refused = observed
+            .iter()
+            .any(|seen| usize::from(seen.stimulus) == stimuli.len() - 1 && seen.seen == Seen::Unsupported);
+        let only = self
+            .description
+            .offers
+            .iter()
+            .all(|offer| offer.pd_out.0 == offer.pd_out.1 && offer.pd_in.0 == offer.pd_in.1)
+            && self.description.offers.len() == 1;
+        if refused && !only {
+            return Err(DutError::Contract { what: "a variant inside its offer was refused".to_owned() });
+        }
+        Ok(())
+    }
+}
+
+/// What a run needs to know.
+pub struct Run<'r> {
+    /// Cases, start conditions, ledger, tolerances.
+    pub library: &'r Library,
+    /// Profile in force.
+    pub profile: &'r Profile,
+    /// Tolerances in force.
+    pub allowed: Mask,
+    /// Seed everything random derives from.
+    pub seed: u64,
+    /// How to call fsct for one case again, without the filter.
+    pub command: String,
+    /// Set when the user asks to stop.
+    pub interrupted: &'r AtomicBool,
+}
+
+impl Run<'_> {
+    /// Runs a plan; `record` gets each case as it ends. `connect` makes a fresh connection, the first one may be given.
+    ///
+    /// # Errors
+    /// What `record` returns, at once.
+    pub fn execute<E>(
+        &self,
+        plan: &Plan<'_>,
+        first: Result<Bench, DutError>,
+        mut connect: impl FnMut() -> Result<Bench, DutError>,
+        mut record: impl FnMut(CaseRecord) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let mut bench = Some(first);
+        let mut lost = 0;
+        for planned in &plan.cases {
+            if self.interrupted.load(Ordering::Relaxed) {
+                break;
+            }
+            if lost >= GIVE_UP {
+                let why = format!("not tried: the DUT was lost in {GIVE_UP} cases in a row");
+                record(self.not_run(planned, Execution::Aborted, "dut/given-up", &why))?;
+                continue;
+            }
+            let mut ready = match bench.take() {
+                Some(Ok(bench)) => Ok(bench),
+                Some(Err(error)) if lost == 0 => Err(error),
+                _ => connect(),
+            };
+            let configured = ready
+                .as_mut()
+                .map_err(|error| error.clone())
+                .and_then(|bench| bench.configure(planned.binding.variant));
+            match (configured, ready) {
+                (Ok(()), Ok(mut ready)) => {
+                    let (case, is_lost) = self.case(planned, &mut ready);
+                    lost = if is_lost { lost + 1 } else { 0 };
+                    bench = (!is_lost).then_some(Ok(ready));
+                    record(case)?;
+                }
+                (Err(error), _) | (_, Err(error)) => {
+                    lost += 1;
+                    let (execution, kind) = execution(&error);
+                    record(self.not_run(planned, execution, kind, &error.to_string()))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// One case on a configured DUT; `true`: the connection is of no further use.
+    fn case(&self, planned: &Planned<'_>, bench: &mut Bench) -> (CaseRecord, bool) {
+        let mut problems = Vec::new();
+        let start = self.library.start_steps(&planned.case.start, &mut problems);
+        let steps = planned.case.steps(&planned.binding, &mut problems);
+        if let Some(problem) = problems.first() {
+            return (self.not_run(planned, Execution::ToolError, "tool/case", &problem.to_string()), false);
+        }
+        let setup = self.setup(planned, &bench.description);
+        let rng = Pcg64Mcg::seed_from_u64(self.seed ^ hash(&planned.key));
+        let tester = Tester::new(&setup, rng);
+        let oracle = DeviceOracle::new(setup);
+        let Bench { dut, description } = bench;
+        let mut session = Session::new(dut.as_mut(), description, self.profile, oracle, self.interrupted);
+        let demands = self.demands(planned);
+        let ran = catch_unwind(AssertUnwindSafe(|| {
+            Engine::new(&mut session, tester, demands).run(&start, &planned.case.start, &steps)
+        }));
+        match ran {
+            Ok(outcome) => {
+                let lost = outcome.lost;
+                (self.record(planned, outcome, session), lost)
+            }
+            Err(panic) => {
+                let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+                let text = text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_default();
+                let why = format!("a fault of fsct itself, please report it: {text}");
+                (self.not_run(planned, Execution::ToolError, "tool/panic", &why), true)
+            }
+        }
+    }
+
+    fn setup(&self, planned: &Planned<'_>, description: &Description) -> Setup {
+        let Variant { edition, mode, pd_out, pd_in } = planned.binding.variant;
+        let profile = self.profile;
+        Setup {
+            edition,
+            mode,
+            pd_out: pd_out.into(),
+            pd_in: pd_in.into(),
+            port: profile.port,
+            reading: profile.reading,
+            watchdog_ns: profile.watchdog_ns(),
+            tick_ns: profile.timer_tick_us * 1_000,
+            margin_ns: profile.margin_ns(),
+            uncertainty_ns: description.clock.uncertainty_ns,
+            latency: profile.answer_latency,
+            scl_start_ns: profile.scl_start_ms * 1_000_000,
+            allowed: self.allowed,
+            app: description.pcos.contains(&Pco::App),
+        }
+    }
+
+    /// Whether anything a case judges is demanded: only then its own expectations can fail a product.
+    fn demands(&self, planned: &Planned<'_>) -> bool {
+        planned.case.requirements.iter().filter_map(|id| self.library.ledger.get(id)).any(|record| record.can_fail())
+    }
+
+    fn record(&self, planned: &Planned<'_>, mut outcome: Outcome, session: Session<'_>) -> CaseRecord {
+        let taken = session.oracle.taken();
+        let count = |number: u8| taken.get(usize::from(number).wrapping_sub(20)).copied().unwrap_or(0);
+        let missed: Vec<String> = planned
+            .case
+            .covers
+            .iter()
+            .filter(|number| count(**number) == 0)
+            .map(|number| format!("T{number}"))
+            .collect();
+        if outcome.verdict < Verdict::Inconclusive && outcome.execution == Execution::Ok && !missed.is_empty() {
+            outcome.verdict = Verdict::Inconclusive;
+            outcome.reasons.push(Reason {
+                verdict: Verdict::Inconclusive,
+                kind: "covers".to_owned(),
+                clause: String::new(),
+                step: outcome.steps.len().saturating_sub(1),
+                entry: None,
+                expected: format!("the DUT takes {}", missed.join(", ")),
+                observed: "it did not, so the case did not show what it is for".to_owned(),
+            });
+        }
+        let shown = self.library.tolerances.shown();
+        let mut tolerances = BTreeMap::new();
+        for number in session.oracle.used().iter().filter(|number| shown.has(*number)) {
+            let text = self
+                .library
+                .tolerances
+                .get(number)
+                .map_or(String::new(), |entry| format!("{}: {} ({})", entry.stance, entry.name, entry.text));
+            tolerances.insert(format!("A{number:02}"), text);
+        }
+        if !tolerances.is_empty() {
+            outcome.verdict = outcome.verdict.max(Verdict::Remark);
+        }
+        let duration_ns = session.now;
+        let (trace, elided, moved) = session.trace.into_entries();
+        for reason in &mut outcome.reasons {
+            reason.entry = reason.entry.map(&moved);
+        }
+        for step in &mut outcome.steps {
+            step.entries = (moved(step.entries.0), moved(step.entries.1));
+        }
+        let mut record = self.blank(planned);
+        record.verdict = outcome.verdict;
+        record.execution = outcome.execution;
+        record.reasons = outcome.reasons;
+        record.tolerances = tolerances;
+        record.transitions = (20u8..=31)
+            .filter(|number| count(*number) > 0)
+            .map(|number| (format!("T{number}"), count(number)))
+            .collect();
+        record.steps = outcome.steps;
+        record.trace = trace;
+        record.elided = elided;
+        record.duration_ns = duration_ns;
+        record
+    }
+
+    fn not_run(&self, planned: &Planned<'_>, execution: Execution, kind: &str, why: &str) -> CaseRecord {
+        let mut record = self.blank(planned);
+        record.verdict = Verdict::Inconclusive;
+        record.execution = execution;
+        record.reasons.push(Reason {
+            verdict: Verdict::Inconclusive,
+            kind: kind.to_owned(),
+            clause: String::new(),
+            step: 0,
+            entry: None,
+            expected: "the case is executed".to_owned(),
+            observed: why.to_owned(),
+        });
+        record.steps.push(StepRecord {
+            text: format!("start: {}", planned.case.start),
+            executed: false,
+            entries: (0, 0),
+            checks: Vec::new(),
+        });
+        record
+    }
+
+    fn blank(&self, planned: &Planned<'_>) -> CaseRecord {
+        let Planned { case, binding, key } = planned;
+        let edition = binding.variant.edition;
+        let requirements = case
+            .requirements
+            .iter()
+            .filter_map(|id| self.library.ledger.get(id))
+            .map(|record| RequirementRef {
+                id: record.id.clone(),
+                clause: record.clause(edition).to_owned(),
+                level: record.level.name().to_owned(),
+            })
+            .collect();
+        CaseRecord {
+            key: key.clone(),
+            id: case.id.clone(),
+            suite: case.suite.clone(),
+            title: case.title.clone(),
+            place: case.place(),
+            sweep: binding.values.clone(),
+            variant: VariantInfo {
+                edition: edition.name().to_owned(),
+                mode: binding.variant.mode.name().to_owned(),
+                pd_out: binding.variant.pd_out,
+                pd_in: binding.variant.pd_in,
+                leading_octet: self.profile.reading == Reading::LeadingOctet,
+            },
+            requirements,
+            verdict: Verdict::Pass,
+            execution: Execution::Ok,
+            reasons: Vec::new(),
+            tolerances: BTreeMap::new(),
+            transitions: BTreeMap::new(),
+            start: case.start.clone(),
+            steps: Vec::new(),
+            trace: Vec::new(),
+            elided: 0,
+            duration_ns: 0,
+            replay: format!("{} --seed {} --filter '{key}'", self.command, self.seed),
+        }
+    }
+}
+
+/// FNV-1a of a text: one seed per case that does not depend on the other cases.
+fn hash(text: &str) -> u64 {
+    text.bytes().fold(0xCBF2_9CE4_8422_2325, |hash, octet| (hash ^ u64::from(octet)).wrapping_mul(0x0100_0000_01B3))
+}
+
+/// What the DUT says of itself, for the record.
+pub fn dut_info(url: &str, description: &Description) -> DutInfo {
+    DutInfo {
+        url: url.to_owned(),
+        role: description.role.to_string(),
+        vendor: description.vendor.clone(),
+        product: description.product.clone(),
+        version: description.version.clone(),
+        pcos: description.pcos.iter().map(|pco| pco.name().to_owned()).collect(),
+        clock: match description.clock.kind {
+            fsct_adapters::ClockKind::Virtual => "virtual".to_owned(),
+            fsct_adapters::ClockKind::Real => "real".to_owned(),
+        },
+        resolution_ns: description.clock.resolution_ns,
+        uncertainty_ns: description.clock.uncertainty_ns,
+        offers: description
+            .offers
+            .iter()
+            .map(|offer| {
+                format!(
+                    "{} with {}, PDout {}..{}, PDin {}..{}",
+                    offer.edition, offer.mode, offer.pd_out.0, offer.pd_out.1, offer.pd_in.0, offer.pd_in.1
+                )
+            })
+            .collect(),
+    }
+}

@@ -1,0 +1,259 @@
+//! The case language: suites of cases as YAML, read, checked and turned into typed steps.
+
+mod decode;
+pub mod model;
+mod sweep;
+
+pub use sweep::{Axis, Binding, Expansion};
+
+use crate::problem::{Problem, Source, suggestion};
+use crate::tree::{self, Fields};
+use crate::yaml::{self, Node, Value};
+use fsct_adapters::{Pco, Role};
+use model::Step;
+use std::collections::BTreeSet;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// A file of cases.
+#[derive(Clone, Debug)]
+pub struct Suite {
+    /// Its name, unique.
+    pub name: String,
+    /// What it is about.
+    pub about: String,
+    /// Its cases, in the order of the file.
+    pub cases: Vec<Case>,
+}
+
+/// A case before its sweep is expanded.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// Stable id without meaning.
+    pub id: String,
+    /// What it shows.
+    pub title: String,
+    /// Suite it stands in.
+    pub suite: String,
+    /// Requirement records it judges.
+    pub requirements: Vec<String>,
+    /// Which side it is for.
+    pub role: Role,
+    /// Points of control and observation it cannot do without.
+    pub needs: Vec<Pco>,
+    /// Its sweep, in the order of the file.
+    pub sweep: Vec<Axis>,
+    /// Start condition, reached and verified first.
+    pub start: String,
+    /// Transitions that have to happen.
+    pub covers: Vec<u8>,
+    /// Its steps as they stand in the file.
+    steps: Node,
+    /// File.
+    pub source: Arc<Source>,
+    /// Place of the id.
+    pub at: Range<usize>,
+}
+
+/// A start condition.
+#[derive(Clone, Debug)]
+pub struct Start {
+    /// Its name.
+    pub name: String,
+    /// What it means.
+    pub about: String,
+    /// The start condition it goes on from.
+    pub after: Option<String>,
+    steps: Node,
+    source: Arc<Source>,
+}
+
+/// Reads a suite.
+///
+/// # Errors
+/// Every problem of the file that can be told without knowing other files.
+pub fn suite(source: &Arc<Source>) -> Result<Suite, Vec<Problem>> {
+    let root = yaml::parse(source).map_err(|problem| vec![problem])?;
+    let mut problems = Vec::new();
+    let mut fields = Fields::new(source, &root, "a suite", &mut problems);
+    let name = fields.text("suite").map(|placed| placed.0).unwrap_or_default();
+    let about = fields.text("about").map(|placed| placed.0).unwrap_or_default();
+    let cases = fields.get("cases");
+    fields.finish(&mut problems);
+    let items = match cases {
+        Some(node) => tree::list(source, node, "`cases`", &mut problems),
+        None => {
+            problems.push(Problem::new(source, root.at.clone(), "a suite needs `cases`"));
+            &[]
+        }
+    };
+    let cases = items.iter().filter_map(|item| case(source, &name, item, &mut problems)).collect();
+    if problems.is_empty() { Ok(Suite { name, about, cases }) } else { Err(problems) }
+}
+
+fn case(source: &Arc<Source>, suite: &str, node: &Node, problems: &mut Vec<Problem>) -> Option<Case> {
+    const ROLES: &[(Role, &str)] = &[(Role::Device, "device"), (Role::Master, "master")];
+    let mut fields = Fields::new(source, node, "a case", problems);
+    let id = fields.text("id");
+    let title = fields.text("title");
+    let _about = fields.optional("about");
+    let requirements = fields.texts("requirements");
+    let role = fields.word("dut", ROLES);
+    let needs = fields.texts("needs");
+    let axes = fields.get("sweep");
+    let start = fields.text("start");
+    let steps = fields.get("steps");
+    let covers = fields.texts("covers");
+    fields.finish(problems);
+    let mut problem = |at: &Range<usize>, message: String| problems.push(Problem::new(source, at.clone(), message));
+    if let Some((id, at)) = &id
+        && !is_case_id(id)
+    {
+        problem(at, format!("`{id}` is no case id: letters, a hyphen and four digits, such as FSD-0231"));
+    }
+    if requirements.is_empty() {
+        problem(&node.at, "a case judges at least one requirement: add `requirements: [R-...]`".into());
+    }
+    let mut wanted = Vec::new();
+    for (text, at) in needs {
+        match Pco::ALL.into_iter().find(|pco| pco.name() == text) {
+            Some(pco) => wanted.push(pco),
+            None => {
+                problem(&at, format!("`{text}` is no point of control; {}", suggestion(&text, Pco::ALL.map(Pco::name))))
+            }
+        }
+    }
+    let mut transitions = Vec::new();
+    for (text, at) in covers {
+        match text.strip_prefix('T').and_then(|number| number.parse().ok()) {
+            Some(number @ (1..=14 | 20..=31)) => transitions.push(number),
+            _ => problem(&at, format!("`{text}` is no transition: T1 to T14 and T20 to T31 are")),
+        }
+    }
+    let sweep = axes.map(|node| sweep::axes(source, node, problems)).unwrap_or_default();
+    let Some(steps) = steps else {
+        problems.push(Problem::new(source, node.at.clone(), "a case needs `steps`"));
+        return None;
+    };
+    let (id, at) = id?;
+    Some(Case {
+        id,
+        title: title?.0,
+        suite: suite.to_owned(),
+        requirements: requirements.into_iter().map(|placed| placed.0).collect(),
+        role: role?,
+        needs: wanted,
+        sweep,
+        start: start?.0,
+        covers: transitions,
+        steps: steps.clone(),
+        source: source.clone(),
+        at,
+    })
+}
+
+fn is_case_id(id: &str) -> bool {
+    id.split_once('-').is_some_and(|(letters, digits)| {
+        (2..=5).contains(&letters.len())
+            && letters.bytes().all(|octet| octet.is_ascii_uppercase())
+            && digits.len() == 4
+            && digits.bytes().all(|octet| octet.is_ascii_digit())
+    })
+}
+
+/// Reads the start conditions.
+///
+/// # Errors
+/// Every problem of the file.
+pub fn starts(source: &Arc<Source>) -> Result<Vec<Start>, Vec<Problem>> {
+    let root = yaml::parse(source).map_err(|problem| vec![problem])?;
+    let mut problems = Vec::new();
+    let mut found: Vec<Start> = Vec::new();
+    for item in tree::list(source, &root, "the list of start conditions", &mut problems) {
+        let mut fields = Fields::new(source, item, "a start condition", &mut problems);
+        let name = fields.text("name");
+        let about = fields.text("about").map(|placed| placed.0).unwrap_or_default();
+        let after = fields.optional("after");
+        let steps = fields.get("steps").cloned();
+        fields.finish(&mut problems);
+        let Some((name, _)) = name else { continue };
+        if let Some((after, at)) = &after
+            && !found.iter().any(|start| start.name == *after)
+        {
+            let help = suggestion(after, found.iter().map(|start| start.name.as_str()));
+            problems.push(Problem::new(source, at.clone(), format!("no start condition `{after}` above")).help(help));
+        }
+        let steps = steps.unwrap_or(Node { at: item.at.clone(), value: Value::List(Vec::new()) });
+        found.push(Start { name, about, after: after.map(|placed| placed.0), steps, source: source.clone() });
+    }
+    if problems.is_empty() { Ok(found) } else { Err(problems) }
+}
+
+impl Start {
+    /// The steps that lead here from the start condition before it.
+    pub fn steps(&self, problems: &mut Vec<Problem>) -> Vec<Step> {
+        decode::steps(&self.source, &self.steps, problems)
+    }
+}
+
+impl Case {
+    /// The typed steps for one point of the sweep.
+    pub fn steps(&self, binding: &Binding, problems: &mut Vec<Problem>) -> Vec<Step> {
+        let mut used = BTreeSet::new();
+        let steps = self.substitute(&self.steps, binding, &mut used, problems);
+        for axis in self.sweep.iter().filter(|axis| !axis.is_variant() && !used.contains(&axis.name)) {
+            let message = format!("the sweep over `{0}` changes nothing: no step uses `${0}`", axis.name);
+            problems.push(Problem::new(&self.source, axis.at.clone(), message));
+        }
+        decode::steps(&self.source, &steps, problems)
+    }
+
+    /// `file:line` of the case.
+    pub fn place(&self) -> String {
+        format!("{}:{}", self.source.name, self.source.line_column(self.at.start).0)
+    }
+
+    fn substitute(
+        &self,
+        node: &Node,
+        binding: &Binding,
+        used: &mut BTreeSet<String>,
+        problems: &mut Vec<Problem>,
+    ) -> Node {
+        let value = match &node.value {
+            Value::Scalar(text) => match text.strip_prefix('$') {
+                None => Value::Scalar(text.clone()),
+                Some(name) => match binding.value(name) {
+                    Some(value) => {
+                        used.insert(name.to_owned());
+                        Value::Scalar(value.to_owned())
+                    }
+                    None => {
+                        let help = suggestion(name, self.sweep.iter().map(|axis| axis.name.as_str()));
+                        let message = format!("`${name}` is no variable of the sweep");
+                        problems.push(Problem::new(&self.source, node.at.clone(), message).help(help));
+                        Value::Scalar("0".to_owned())
+                    }
+                },
+            },
+            Value::Null => Value::Null,
+            Value::List(items) => {
+                Value::List(items.iter().map(|item| self.substitute(item, binding, used, problems)).collect())
+            }
+            Value::Map(entries) => Value::Map(
+                entries.iter().map(|(key, n)| (key.clone(), self.substitute(n, binding, used, problems))).collect(),
+            ),
+        };
+        Node { at: node.at.clone(), value }
+    }
+}
+
+impl Case {
+    /// The points of the sweep for a DUT that offers this.
+    ///
+    /// # Errors
+    /// A [`Problem`] when the sweep is too large.
+    pub fn expand(&self, offers: &[fsct_adapters::Offer]) -> Result<Expansion, Problem> {
+        sweep::expand(&self.source, &self.sweep, offers)
+    }
+}

@@ -1,0 +1,452 @@
+//! Executes one case: start condition, steps, and the liveness check every case ends with.
+
+use crate::case::model::*;
+use crate::expect::{self, Before};
+use crate::partner::Partner;
+use crate::profile::Parameterization;
+use crate::session::{Reply, Session, Stop};
+use crate::tester::Tester;
+use fsct_adapters::{DutError, Fault, Octets, Pco, Service, Stimulus};
+use fsct_protocol::fsp::{Authenticity, INDEX_AUTHENTICITY, INDEX_PROTOCOL, INDEX_VERIFY, Protocol, VerifyRecord};
+use fsct_reports::record::{Execution, Reason, StepRecord, Verdict};
+
+/// The bound of the liveness requirement (R-11.5.3-22): 8 SCL cycles plus 2 FSP_Watchdog.
+const LIVENESS_SCL_CYCLES: u64 = 8;
+
+/// What came of a case.
+#[derive(Debug)]
+pub struct Outcome {
+    /// Conformance.
+    pub verdict: Verdict,
+    /// Execution.
+    pub execution: Execution,
+    /// Why.
+    pub reasons: Vec<Reason>,
+    /// Steps as executed.
+    pub steps: Vec<StepRecord>,
+    /// The DUT was lost: the connection is of no further use.
+    pub lost: bool,
+}
+
+/// A case on its way.
+pub struct Engine<'s, 'd> {
+    session: &'s mut Session<'d>,
+    tester: Tester,
+    outcome: Outcome,
+    /// Whether failing an expectation fails the case, or is a remark because nothing it judges is demanded.
+    demands: bool,
+    checks: usize,
+    step: usize,
+}
+
+impl<'s, 'd> Engine<'s, 'd> {
+    /// Ready to begin.
+    pub fn new(session: &'s mut Session<'d>, tester: Tester, demands: bool) -> Engine<'s, 'd> {
+        let outcome = Outcome {
+            verdict: Verdict::Pass,
+            execution: Execution::Ok,
+            reasons: Vec::new(),
+            steps: Vec::new(),
+            lost: false,
+        };
+        Engine { session, tester, outcome, demands, checks: 0, step: 0 }
+    }
+
+    /// Runs start condition, steps and liveness check.
+    pub fn run(mut self, start: &[Step], start_name: &str, steps: &[Step]) -> Outcome {
+        let name = format!("start: {start_name}");
+        let went = self.block(name, |engine| engine.start(start)).and_then(|()| {
+            for (index, step) in steps.iter().enumerate() {
+                self.step = index + 1;
+                self.block(step.text.clone(), |engine| engine.step(step))?;
+            }
+            self.step = steps.len() + 1;
+            self.block("liveness: a conformant FS-Master restores operation".to_owned(), Engine::liveness)
+        });
+        if let Err(Stopped) = went {
+            for step in steps.iter().skip(self.outcome.steps.len().saturating_sub(1)) {
+                let record =
+                    StepRecord { text: step.text.clone(), executed: false, entries: (0, 0), checks: Vec::new() };
+                self.outcome.steps.push(record);
+            }
+        }
+        if self.checks == 0 && self.outcome.verdict == Verdict::Pass {
+            self.reason(Verdict::Inconclusive, "nothing-checked", "", "at least one expectation judged", "none");
+        }
+        self.outcome
+    }
+
+    fn block(
+        &mut self,
+        text: String,
+        action: impl FnOnce(&mut Engine<'s, 'd>) -> Result<(), Stop>,
+    ) -> Result<(), Stopped> {
+        let first = self.session.trace.len();
+        self.outcome.steps.push(StepRecord { text, executed: true, entries: (first, first), checks: Vec::new() });
+        self.session.events.clear();
+        let result = action(self);
+        if let Some(record) = self.outcome.steps.last_mut() {
+            record.entries.1 = self.session.trace.len();
+        }
+        match result {
+            Ok(()) if self.outcome.verdict == Verdict::Fail => Err(Stopped),
+            Ok(()) => Ok(()),
+            Err(stop) => {
+                self.stopped(stop);
+                Err(Stopped)
+            }
+        }
+    }
+
+    fn stopped(&mut self, stop: Stop) {
+        match stop {
+            Stop::Mismatch(found) => {
+                let kind = format!("oracle/{}", found.kind);
+                self.reason(found.verdict, &kind, &found.clause, &found.expected, &found.observed);
+            }
+            Stop::Unserved(what) => {
+                self.outcome.execution = Execution::DutError;
+                self.reason(Verdict::Inconclusive, "dut/unserved", "", "everything the DUT says it serves", &what);
+            }
+            Stop::Interrupted => {
+                self.outcome.execution = Execution::Aborted;
+                self.reason(
+                    Verdict::Inconclusive,
+                    "interrupted",
+                    "",
+                    "the case runs to its end",
+                    "stopped by the user",
+                );
+            }
+            Stop::Dut(error) => {
+                self.outcome.lost = true;
+                let (execution, kind) = execution(&error);
+                self.outcome.execution = execution;
+                self.reason(Verdict::Inconclusive, kind, "", "an answer of the DUT", &error.to_string());
+            }
+        }
+    }
+
+    fn reason(&mut self, verdict: Verdict, kind: &str, clause: &str, expected: &str, observed: &str) {
+        self.outcome.verdict = self.outcome.verdict.max(verdict);
+        self.outcome.reasons.push(Reason {
+            verdict,
+            kind: kind.to_owned(),
+            clause: clause.to_owned(),
+            step: self.step,
+            entry: self.session.trace.len().checked_sub(1),
+            expected: expected.to_owned(),
+            observed: observed.to_owned(),
+        });
+    }
+
+    fn start(&mut self, steps: &[Step]) -> Result<(), Stop> {
+        for step in steps {
+            self.step(step)?;
+            if self.outcome.verdict == Verdict::Fail {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    fn step(&mut self, step: &Step) -> Result<(), Stop> {
+        let before = Before::now(self.session);
+        let reached = self.act(&step.action, &before)?;
+        self.judge(&reached, &before, Verdict::Fail);
+        self.judge(&step.expect, &before, Verdict::Fail);
+        self.judge(&step.remark, &before, Verdict::Remark);
+        Ok(())
+    }
+
+    fn judge(&mut self, expectations: &[Expectation], before: &Before, verdict: Verdict) {
+        for expectation in expectations {
+            let Some(check) = expect::judge(expectation, before, self.session, &self.tester) else { continue };
+            self.checks += 1;
+            if !check.met {
+                let verdict = if self.demands { verdict } else { Verdict::Remark };
+                let kind = format!("expect/{}", check.key);
+                let text = |value: &str| format!("{} {value}", check.key);
+                let clause = expectation.key.clause();
+                self.reason(verdict, &kind, clause, &text(&check.expected), &text(&check.observed));
+            }
+            if let Some(record) = self.outcome.steps.last_mut() {
+                record.checks.push(check);
+            }
+        }
+    }
+
+    /// Carries an action out; expectations of an `until` that was not reached come back to be judged.
+    fn act(&mut self, action: &Action, before: &Before) -> Result<Vec<Expectation>, Stop> {
+        match action {
+            Action::Exchange(exchange) => return self.exchanges(exchange, before),
+            Action::Wait(wait) => self.wait(wait)?,
+            Action::Partner(partner) => return self.partner(partner, before),
+            Action::Power(on) => self.power(*on)?,
+            Action::Parameterize => self.parameterize()?,
+            Action::Write { index, subindex, data } => {
+                self.acyclic(Stimulus::Write { index: *index, subindex: *subindex, data: data.clone() })?;
+            }
+            Action::Read { index, subindex } => {
+                self.acyclic(Stimulus::Read { index: *index, subindex: *subindex })?;
+            }
+            Action::App(set) => self.app(set)?,
+            Action::Look => {}
+        }
+        Ok(Vec::new())
+    }
+
+    fn exchanges(&mut self, exchange: &Exchange, before: &Before) -> Result<Vec<Expectation>, Stop> {
+        if exchange.until.is_empty() {
+            for _ in 0..exchange.times {
+                self.scl_cycle(exchange)?;
+            }
+            return Ok(Vec::new());
+        }
+        for _ in 0..exchange.within {
+            self.scl_cycle(exchange)?;
+            if self.hold(&exchange.until, before) {
+                break;
+            }
+        }
+        Ok(exchange.until.clone())
+    }
+
+    fn hold(&self, expectations: &[Expectation], before: &Before) -> bool {
+        expectations
+            .iter()
+            .filter_map(|expectation| expect::judge(expectation, before, self.session, &self.tester))
+            .all(|check| check.met)
+    }
+
+    /// One SCL cycle: the SPDU goes out in every exchange until the answer mirrors it or the latency is over.
+    fn scl_cycle(&mut self, exchange: &Exchange) -> Result<(), Stop> {
+        let echo = self.session.image;
+        let (octets, note) = self.tester.build(exchange, echo);
+        self.session.trace.note(note);
+        let started = self.session.now + self.session.profile.master_cycle_time_ns;
+        if exchange.image == Image::Spdu && exchange.mcount != Count::Same {
+            self.tester.first_copy = started;
+        }
+        if let Some(repeat) = exchange.repeat {
+            for _ in 0..repeat {
+                self.session.exchange(octets)?;
+            }
+            return Ok(());
+        }
+        for _ in 0..=self.session.profile.answer_latency {
+            self.session.exchange(octets)?;
+            let answered = self.session.answer().map(|view| view.status().dcount_i);
+            if exchange.image == Image::Spdu && answered.is_some() && answered == self.tester.mirror() {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    fn wait(&mut self, wait: &Wait) -> Result<(), Stop> {
+        let octets = match wait.link {
+            Link::Repeat => self.tester.octets,
+            Link::Lost => None,
+            Link::Zero => self.tester.octets.map(|octets| Octets::zero(octets.as_slice().len())),
+        };
+        let until = self.tester.first_copy.saturating_add_signed(self.nanoseconds(wait.until));
+        self.session.exchange_until(until, octets)
+    }
+
+    fn nanoseconds(&self, duration: Duration) -> i64 {
+        let profile = self.session.profile;
+        let latency = profile.answer_latency as i64 * profile.master_cycle_time_ns as i64;
+        duration.watchdogs * profile.watchdog_ns() as i64
+            + duration.cycles * profile.master_cycle_time_ns as i64
+            + duration.margins * (profile.margin_ns() as i64 + latency)
+            + duration.ms * 1_000_000
+    }
+
+    fn partner(&mut self, wanted: &super::case::model::Partner, before: &Before) -> Result<Vec<Expectation>, Stop> {
+        let exchanges = match wanted.within {
+            Some(cycles) => u64::from(cycles) * (self.session.profile.answer_latency + 1),
+            None => self.liveness_exchanges(),
+        };
+        let mut partner = Partner::new(wanted.from, wanted.operator, self.session, &mut self.tester);
+        for _ in 0..exchanges {
+            partner.exchange(self.session, &mut self.tester)?;
+            let reached = match wanted.until.is_empty() {
+                true => wanted.within.is_none() && partner.operates(self.session, &self.tester),
+                false => self.hold(&wanted.until, before),
+            };
+            if reached {
+                break;
+            }
+        }
+        if wanted.until.is_empty() && wanted.within.is_none() {
+            self.operating(&partner, exchanges);
+        }
+        Ok(wanted.until.clone())
+    }
+
+    fn operating(&mut self, partner: &Partner, exchanges: u64) {
+        self.checks += 1;
+        let met = partner.operates(self.session, &self.tester);
+        let expected = format!("operation within 8 SCL cycles plus 2 FSP_Watchdog ({exchanges} exchanges)");
+        let observed = if met { "operation" } else { "no operation" };
+        if !met {
+            let (clause, found) = ("11.5.3 (R-11.5.3-22)", self.situation());
+            self.reason(Verdict::Fail, "liveness", clause, &expected, &format!("no operation: {found}"));
+        }
+        if let Some(record) = self.outcome.steps.last_mut() {
+            record.checks.push(fsct_reports::record::Check {
+                key: "operation".to_owned(),
+                expected,
+                observed: observed.to_owned(),
+                met,
+            });
+        }
+    }
+
+    fn situation(&self) -> String {
+        match self.session.answer().map(|view| view.status()) {
+            None => "no answer of the SCL".to_owned(),
+            Some(s) => format!(
+                "DCount_i {} SDset {} DCommErr {} DTimeout {}",
+                s.dcount_i,
+                u8::from(s.sd_set),
+                u8::from(s.d_comm_err),
+                u8::from(s.d_timeout)
+            ),
+        }
+    }
+
+    fn liveness_exchanges(&self) -> u64 {
+        let profile = self.session.profile;
+        LIVENESS_SCL_CYCLES * (profile.answer_latency + 1)
+            + 2 * profile.watchdog_ns().div_ceil(profile.master_cycle_time_ns)
+            + profile.scl_start_ms * 1_000_000 / profile.master_cycle_time_ns
+    }
+
+    /// Every case ends here: the link is restored, a conformant FS-Master acknowledges, and the DUT has to operate. A DUT that
+    /// is switched off or was never started is started first. So no case passes on a DUT that does nothing.
+    fn liveness(&mut self) -> Result<(), Stop> {
+        let running = self.session.oracle.state().is_some();
+        if running {
+            if self.session.serves(Pco::App) {
+                self.session.set(Service::SdsetDs, Octets::bit(false))?;
+            }
+        } else {
+            if self.session.serves(Pco::Power) {
+                self.power(false)?;
+                self.power(true)?;
+            }
+            self.parameterize()?;
+        }
+        let from = if running && self.tester.count.is_some() { From::Next } else { From::Start };
+        let wanted =
+            super::case::model::Partner { from, operator: Operator::Acknowledges, until: Vec::new(), within: None };
+        self.partner(&wanted, &Before::default())?;
+        Ok(())
+    }
+
+    fn power(&mut self, on: bool) -> Result<(), Stop> {
+        self.tester.restart();
+        if self.session.serves(Pco::Power) { self.session.power(on) } else { Ok(()) }
+    }
+
+    fn app(&mut self, set: &[(Service, Data)]) -> Result<(), Stop> {
+        if !self.session.serves(Pco::App) {
+            // Start conditions do without; a case that needs it is not planned.
+            return Ok(());
+        }
+        for (service, data) in set {
+            let value = match data {
+                Data::Bit(bit) => Octets::bit(*bit),
+                data => {
+                    let setup = self.session.oracle.setup();
+                    // For a signature of 0 in the next answer: its PortNum and status octet are known.
+                    let next = self.tester.count.map_or(0, fsct_protocol::spdu::succ);
+                    let trailer = [setup.port.inverted(), fsct_protocol::spdu::inv3(next) << 5];
+                    let length = setup.pd_in;
+                    Octets::new(self.tester.data(data, length, &trailer).octets()).unwrap_or_default()
+                }
+            };
+            self.session.set(*service, value)?;
+        }
+        Ok(())
+    }
+
+    fn acyclic(&mut self, request: Stimulus) -> Result<(), Stop> {
+        if !self.session.serves(Pco::Acyclic) {
+            return Err(Stop::Unserved("on-request data".to_owned()));
+        }
+        let verify = match &request {
+            Stimulus::Write { index: INDEX_VERIFY, .. } => true,
+            _ => false,
+        };
+        self.session.acyclic(request)?;
+        if verify && self.session.reply == Some(Reply::Written) {
+            self.session.oracle.parameterized(self.session.now);
+        }
+        Ok(())
+    }
+
+    fn parameterize(&mut self) -> Result<(), Stop> {
+        let profile = self.session.profile;
+        self.tester.first_copy = self.session.now;
+        if profile.parameterization == Parameterization::None || !self.session.serves(Pco::Acyclic) {
+            self.session.oracle.parameterized(self.session.now);
+            return Ok(());
+        }
+        let io_struct_crc = self.io_struct_crc()?;
+        let authenticity = Authenticity {
+            authenticity_1: profile.authenticity_1,
+            authenticity_2: profile.authenticity_2,
+            port: profile.port.number(),
+        };
+        let protocol = Protocol {
+            version: 1,
+            mode: self.session.oracle.setup().mode.code(),
+            watchdog_ms: profile.watchdog_ms,
+            io_struct_crc,
+            tech_par_crc: profile.tech_par_crc,
+        };
+        let mut records = Vec::new();
+        if profile.parameterization == Parameterization::Commissioning {
+            records.push((INDEX_AUTHENTICITY, authenticity.to_octets().to_vec()));
+            records.push((INDEX_PROTOCOL, protocol.to_octets().to_vec()));
+        }
+        records.push((INDEX_VERIFY, VerifyRecord { authenticity, protocol }.to_octets().to_vec()));
+        for (index, data) in records {
+            self.acyclic(Stimulus::Write { index, subindex: 0, data })?;
+            if self.session.reply != Some(Reply::Written) {
+                let expected = format!("record 0x{index:04X} written");
+                let observed = format!("{:?}", self.session.reply);
+                self.reason(Verdict::Inconclusive, "start/parameterization", "A.1 Table A.1", &expected, &observed);
+                return Err(Stop::Unserved(format!("the write of record 0x{index:04X} was not carried out")));
+            }
+        }
+        Ok(())
+    }
+
+    /// FSP_IO_StructCRC is the maker's: the DUT tells it.
+    fn io_struct_crc(&mut self) -> Result<u16, Stop> {
+        self.acyclic(Stimulus::Read { index: INDEX_PROTOCOL, subindex: 4 })?;
+        match &self.session.reply {
+            Some(Reply::Value(data)) => match data.as_slice() {
+                [high, low] => Ok(u16::from_be_bytes([*high, *low])),
+                _ => Err(Stop::Unserved(format!("FSP_IO_StructCRC has 2 octets, the DUT answered {}", data.len()))),
+            },
+            other => Err(Stop::Unserved(format!("reading FSP_IO_StructCRC (0x4201.4) gave {other:?}"))),
+        }
+    }
+}
+
+/// Marker: the case has come to its end early, the outcome says why.
+struct Stopped;
+
+/// The execution axis for an error of the DUT, with the kind of the reason.
+pub fn execution(error: &DutError) -> (Execution, &'static str) {
+    match (error, error.fault()) {
+        (DutError::Timeout { .. }, _) => (Execution::Timeout, "dut/timeout"),
+        (_, Fault::Rig) => (Execution::RigError, "rig/unreachable"),
+        _ => (Execution::DutError, "dut/contract"),
+    }
+}

@@ -1,0 +1,160 @@
+//! Expectations of a case against what was seen.
+
+use crate::case::model::{Expectation, Expected, Key};
+use crate::session::{Reply, Session};
+use crate::tester::Tester;
+use crate::trace::hex;
+use fsct_adapters::{Octets, Pco};
+use fsct_reports::record::Check;
+
+/// What stood before a step, for `unchanged`.
+#[derive(Clone, Debug, Default)]
+pub struct Before {
+    image: Option<Octets>,
+    pdout_d: Option<Octets>,
+    dcount_i: Option<u8>,
+}
+
+impl Before {
+    /// What stands now.
+    pub fn now(session: &Session<'_>) -> Before {
+        Before {
+            image: session.image,
+            pdout_d: session.app.pdout_d,
+            dcount_i: session.answer().map(|view| view.status().dcount_i),
+        }
+    }
+}
+
+/// Judges one expectation. `None`: it cannot be judged on this DUT, because the service is not served or the direction
+/// has no process data.
+pub fn judge(expectation: &Expectation, before: &Before, session: &Session<'_>, tester: &Tester) -> Option<Check> {
+    let (expected, observed, met) = match expectation.key {
+        Key::DcountI | Key::SdSet | Key::DcommErr | Key::Dtimeout => {
+            answer_field(expectation, before, session, tester)?
+        }
+        Key::Pdin => pdin(expectation, session)?,
+        Key::Image => image(expectation, before, session),
+        Key::PdoutD | Key::SetSdDc | Key::ChFAckReqDc => service(expectation, before, session, tester)?,
+        Key::Reply => reply(expectation, session),
+        Key::Event => {
+            let wanted = number(expectation);
+            let seen: Vec<String> = session.events.iter().map(|code| format!("0x{code:04X}")).collect();
+            let seen = if seen.is_empty() { "no Event".to_owned() } else { seen.join(", ") };
+            (format!("Event 0x{wanted:04X}"), seen, session.events.iter().any(|code| u32::from(*code) == wanted))
+        }
+    };
+    Some(Check { key: expectation.key.name().to_owned(), expected, observed, met })
+}
+
+fn number(expectation: &Expectation) -> u32 {
+    match expectation.value {
+        Expected::Number(number) => number,
+        _ => 0,
+    }
+}
+
+type Judged = (String, String, bool);
+
+fn compare<T: PartialEq + ToString>(expected: T, observed: Option<T>) -> Judged {
+    let met = observed.as_ref() == Some(&expected);
+    (expected.to_string(), observed.map_or_else(|| "no SPDU".to_owned(), |value| value.to_string()), met)
+}
+
+fn answer_field(expectation: &Expectation, before: &Before, session: &Session<'_>, tester: &Tester) -> Option<Judged> {
+    let status = session.answer().map(|view| view.status());
+    let observed = status.map(|status| {
+        u32::from(match expectation.key {
+            Key::DcountI => status.dcount_i,
+            Key::SdSet => status.sd_set.into(),
+            Key::DcommErr => status.d_comm_err.into(),
+            _ => status.d_timeout.into(),
+        })
+    });
+    let expected = match expectation.value {
+        Expected::Mirror => u32::from(tester.mirror()?),
+        Expected::Unchanged => u32::from(before.dcount_i?),
+        _ => number(expectation),
+    };
+    Some(compare(expected, observed))
+}
+
+fn pdin(expectation: &Expectation, session: &Session<'_>) -> Option<Judged> {
+    let setup = session.oracle.setup();
+    if setup.pd_in == 0 || (expectation.value == Expected::Live && !session.serves(Pco::App)) {
+        return None;
+    }
+    let expected = match &expectation.value {
+        Expected::Live => hex(session.pdin.as_slice()),
+        Expected::Octets(octets) => hex(octets),
+        _ => hex(&vec![0; setup.pd_in]),
+    };
+    Some(compare(expected, session.answer().map(|view| hex(view.pd()))))
+}
+
+fn image(expectation: &Expectation, before: &Before, session: &Session<'_>) -> Judged {
+    let text = |image: &Option<Octets>| match image {
+        Some(octets) if octets.as_slice().iter().any(|octet| *octet != 0) => hex(octets.as_slice()),
+        _ => "all zero or none".to_owned(),
+    };
+    let observed = text(&session.image);
+    match expectation.value {
+        Expected::Unchanged => {
+            let expected = text(&before.image);
+            let met = expected == observed;
+            (expected, observed, met)
+        }
+        Expected::Answer => {
+            let reading = session.oracle.setup().reading;
+            let met = session.answer().is_some_and(|view| view.signature_matches(reading));
+            ("an SPDU with right signature".to_owned(), observed, met)
+        }
+        _ => {
+            let met = observed == text(&None);
+            (text(&None), observed, met)
+        }
+    }
+}
+
+fn service(expectation: &Expectation, before: &Before, session: &Session<'_>, tester: &Tester) -> Option<Judged> {
+    if !session.serves(Pco::App) {
+        return None;
+    }
+    let bit = |value: Option<bool>| value.map(u32::from);
+    match expectation.key {
+        Key::SetSdDc => return Some(compare(number(expectation), bit(session.app.set_sd_dc))),
+        Key::ChFAckReqDc => return Some(compare(number(expectation), bit(session.app.ch_f_ack_req_dc))),
+        _ => {}
+    }
+    if session.oracle.setup().pd_out == 0 {
+        return None;
+    }
+    let expected = match &expectation.value {
+        Expected::Live => hex(tester.pdout.octets()),
+        Expected::Unchanged => hex(before.pdout_d?.as_slice()),
+        Expected::Octets(octets) => hex(octets),
+        _ => hex(&vec![0; session.oracle.setup().pd_out]),
+    };
+    Some(compare(expected, session.app.pdout_d.map(|octets| hex(octets.as_slice()))))
+}
+
+fn reply(expectation: &Expectation, session: &Session<'_>) -> Judged {
+    let observed = match &session.reply {
+        None => "no answer".to_owned(),
+        Some(Reply::Value(data)) => hex(data),
+        Some(Reply::Written) => "written".to_owned(),
+        Some(Reply::Refused(error)) => format!("refused 0x{error:04X}"),
+        Some(Reply::Unsupported) => "unsupported".to_owned(),
+    };
+    let expected = match &expectation.value {
+        Expected::Written => "written".to_owned(),
+        Expected::Refused => {
+            let met = matches!(session.reply, Some(Reply::Refused(_)));
+            return ("refused".to_owned(), observed, met);
+        }
+        Expected::Octets(octets) => hex(octets),
+        _ => format!("refused 0x{:04X}", number(expectation)),
+    };
+    let met = expected == observed;
+    (expected, observed, met)
+}

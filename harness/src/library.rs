@@ -1,0 +1,249 @@
+//! Everything under `testcases/`: carried in the binary, or read from a folder.
+
+use crate::case::{self, Case, Start, Suite, model::Action, model::Step};
+use crate::ledger::{Class, Ledger};
+use crate::oracle::Tolerances;
+use crate::problem::{Problem, Source, suggestion};
+use crate::profile::Profile;
+use crate::yaml;
+use fsct_adapters::{Offer, Pco, Role};
+use fsct_protocol::{Edition, ProtMode};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::sync::Arc;
+
+static EMBEDDED: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/testcases.rs"));
+
+/// Suites, start conditions, ledger, tolerances and profiles.
+#[derive(Debug)]
+pub struct Library {
+    /// Suites by name.
+    pub suites: Vec<Suite>,
+    /// Start conditions.
+    pub starts: Vec<Start>,
+    /// Ledger.
+    pub ledger: Ledger,
+    /// Tolerances.
+    pub tolerances: Tolerances,
+    /// Profiles by name.
+    pub profiles: BTreeMap<String, Profile>,
+}
+
+impl Library {
+    /// What the binary carries.
+    ///
+    /// # Errors
+    /// Every problem of the files; none in a binary that passed its own tests.
+    pub fn embedded() -> Result<Library, Vec<Problem>> {
+        let sources =
+            EMBEDDED.iter().map(|(name, text)| Arc::new(Source { name: (*name).to_owned(), text: (*text).to_owned() }));
+        Library::from_sources(sources.collect())
+    }
+
+    /// A folder laid out like `testcases/`.
+    ///
+    /// # Errors
+    /// Every problem of the files.
+    pub fn from_folder(folder: &Path) -> Result<Library, Vec<Problem>> {
+        let mut paths = Vec::new();
+        collect(folder, &mut paths, 0);
+        paths.sort();
+        if paths.is_empty() {
+            let message = "holds no YAML files; a folder like testcases/ is meant";
+            return Err(vec![Problem::without_place(&folder.display().to_string(), message)]);
+        }
+        let mut problems = Vec::new();
+        let mut sources = Vec::new();
+        for path in paths {
+            match yaml::load(&path) {
+                Ok(source) => sources.push(source),
+                Err(problem) => problems.push(problem),
+            }
+        }
+        if !problems.is_empty() {
+            return Err(problems);
+        }
+        Library::from_sources(sources)
+    }
+
+    fn from_sources(sources: Vec<Arc<Source>>) -> Result<Library, Vec<Problem>> {
+        let mut problems = Vec::new();
+        let mut suites = Vec::new();
+        let mut starts = Vec::new();
+        let mut ledger = Ledger::default();
+        let mut tolerances = None;
+        let mut profiles = BTreeMap::new();
+        for source in &sources {
+            let parts: Vec<&str> = source.name.split(['/', '\\']).collect();
+            let (folder, file) = match parts.as_slice() {
+                [.., folder, file] => (*folder, *file),
+                _ => ("", source.name.as_str()),
+            };
+            match (folder, file) {
+                ("requirements", _) => ledger.read(source, &mut problems),
+                ("suites", _) => gather(case::suite(source), &mut problems, |suite| suites.push(suite)),
+                ("profiles", _) => gather(Profile::parse(source), &mut problems, |profile| {
+                    profiles.insert(profile.name.clone(), profile);
+                }),
+                (_, "starts.yaml") => gather(case::starts(source), &mut problems, |found| starts = found),
+                (_, "tolerances.yaml") => {
+                    gather(Tolerances::parse(source), &mut problems, |found| tolerances = Some(found));
+                }
+                _ => problems.push(
+                    Problem::without_place(&source.name, "is in no known place")
+                        .help("known are requirements/, suites/, profiles/, starts.yaml and tolerances.yaml"),
+                ),
+            }
+        }
+        match tolerances {
+            Some(tolerances) if problems.is_empty() => Ok(Library { suites, starts, ledger, tolerances, profiles }),
+            Some(_) => Err(problems),
+            None => {
+                problems.push(Problem::without_place("testcases/tolerances.yaml", "is missing"));
+                Err(problems)
+            }
+        }
+    }
+
+    /// Adds the suite of a single file, in place of one with the same name.
+    ///
+    /// # Errors
+    /// Every problem of the file.
+    pub fn add_suite(&mut self, path: &Path) -> Result<String, Vec<Problem>> {
+        let suite = yaml::load(path).map_err(|problem| vec![problem]).and_then(|source| case::suite(&source))?;
+        let name = suite.name.clone();
+        self.suites.retain(|known| known.name != name);
+        self.suites.push(suite);
+        Ok(name)
+    }
+
+    /// All cases.
+    pub fn cases(&self) -> impl Iterator<Item = &Case> {
+        self.suites.iter().flat_map(|suite| &suite.cases)
+    }
+
+    /// The steps that lead from a DUT without supply to a start condition.
+    pub fn start_steps(&self, name: &str, problems: &mut Vec<Problem>) -> Vec<Step> {
+        let mut chain = Vec::new();
+        let mut next = Some(name);
+        while let Some(start) = next.and_then(|name| self.starts.iter().find(|start| start.name == name)) {
+            next = start.after.as_deref();
+            chain.push(start);
+        }
+        chain.iter().rev().flat_map(|start| start.steps(problems)).collect()
+    }
+
+    /// Checks everything against everything, without a DUT.
+    pub fn check(&self) -> Vec<Problem> {
+        let mut problems = Vec::new();
+        let mut ids: BTreeMap<&str, String> = BTreeMap::new();
+        let mut cited = BTreeSet::new();
+        for start in &self.starts {
+            start.steps(&mut problems);
+        }
+        for case in self.cases() {
+            if let Some(before) = ids.insert(&case.id, case.place()) {
+                let message = format!("case id `{}` stands already at {before}", case.id);
+                problems.push(Problem::new(&case.source, case.at.clone(), message));
+            }
+            for id in &case.requirements {
+                cited.insert(id.as_str());
+                if self.ledger.get(id).is_none() {
+                    let message = format!("case {} judges an unknown requirement `{id}`", case.id);
+                    let help = suggestion(id, self.ledger.ids());
+                    problems.push(Problem::new(&case.source, case.at.clone(), message).help(help));
+                }
+            }
+            self.check_case(case, &mut problems);
+        }
+        for requirement in self.ledger.iter() {
+            let cited = cited.contains(requirement.id.as_str());
+            let message = match (requirement.class, cited) {
+                (Class::Tested, false) => "is classed tested, but no case judges it",
+                (class, true) if class != Class::Tested => "is judged by a case, but not classed tested",
+                _ => continue,
+            };
+            problems.push(Problem::without_place(&requirement.place, format!("{} {message}", requirement.id)));
+        }
+        problems
+    }
+
+    fn check_case(&self, case: &Case, problems: &mut Vec<Problem>) {
+        if !self.starts.iter().any(|start| start.name == case.start) {
+            let message = format!("case {} begins at an unknown start condition `{}`", case.id, case.start);
+            let help = suggestion(&case.start, self.starts.iter().map(|start| start.name.as_str()));
+            problems.push(Problem::new(&case.source, case.at.clone(), message).help(help));
+        }
+        let expansion = match case.expand(&EVERYTHING) {
+            Ok(expansion) => expansion,
+            Err(problem) => return problems.push(problem),
+        };
+        let mut found = Vec::new();
+        let mut checks = false;
+        for point in &expansion.points {
+            let steps = case.steps(point, &mut found);
+            checks |= steps.iter().any(expects);
+            if !found.is_empty() {
+                break;
+            }
+        }
+        let mut problem = |message: String| problems.push(Problem::new(&case.source, case.at.clone(), message));
+        if expansion.points.is_empty() {
+            let why = expansion.excluded.first().map_or("it has no points", |(_, term)| term.as_str());
+            problem(format!("case {} can never run: {why}", case.id));
+        } else if found.is_empty() && !checks {
+            problem(format!("case {} expects nothing", case.id));
+        }
+        let foreign = |number: &u8| (*number < 20) == (case.role == Role::Device);
+        if let Some(number) = case.covers.iter().find(|number| foreign(number)) {
+            problem(format!("T{number} is no transition of a {}", case.role));
+        }
+        problems.extend(found);
+    }
+}
+
+/// Offers of a DUT that can be everything, for checks without one.
+pub static EVERYTHING: [Offer; 4] = [
+    Offer { edition: Edition::V1_1, mode: ProtMode::Crc16, pd_out: (0, 3), pd_in: (0, 3) },
+    Offer { edition: Edition::V1_1, mode: ProtMode::Crc32, pd_out: (0, 25), pd_in: (0, 25) },
+    Offer { edition: Edition::Iec2022, mode: ProtMode::Crc16, pd_out: (0, 3), pd_in: (0, 3) },
+    Offer { edition: Edition::Iec2022, mode: ProtMode::Crc32, pd_out: (0, 25), pd_in: (0, 25) },
+];
+
+/// Whether a step judges anything.
+fn expects(step: &Step) -> bool {
+    let until = match &step.action {
+        Action::Exchange(exchange) => !exchange.until.is_empty(),
+        Action::Partner(_) => true,
+        _ => false,
+    };
+    until || !step.expect.is_empty() || !step.remark.is_empty()
+}
+
+/// The points of control and observation that steps cannot do without.
+pub fn needs(steps: &[Step]) -> impl Iterator<Item = Pco> + '_ {
+    steps.iter().filter_map(|step| match step.action {
+        Action::Power(_) => Some(Pco::Power),
+        Action::App(_) => Some(Pco::App),
+        Action::Read { .. } | Action::Write { .. } => Some(Pco::Acyclic),
+        _ => None,
+    })
+}
+
+fn gather<T>(result: Result<T, Vec<Problem>>, problems: &mut Vec<Problem>, keep: impl FnOnce(T)) {
+    match result {
+        Ok(value) => keep(value),
+        Err(found) => problems.extend(found),
+    }
+}
+
+fn collect(folder: &Path, paths: &mut Vec<std::path::PathBuf>, depth: usize) {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        if path.is_dir() && depth < 4 {
+            collect(&path, paths, depth + 1);
+        } else if path.extension().is_some_and(|extension| extension == "yaml") {
+            paths.push(path);
+        }
+    }
+}

@@ -1,0 +1,514 @@
+//! The oracle for an FS-Device: Table 40 interpreted over everything a conformant product may be doing.
+
+use super::Mask;
+use super::config::{Config, Free, Snapshot, Window};
+use super::explain::{self, Mismatch, hex};
+use fsct_adapters::{Octets, Service};
+use fsct_protocol::crc::Reading;
+use fsct_protocol::scl::device::{Readings, Received};
+use fsct_protocol::scl::{Device, State, T, Var};
+use fsct_protocol::spdu::{Pd, Port, View};
+use fsct_protocol::{Edition, ProtMode};
+use fsct_reports::record::Verdict;
+
+/// More configurations than this are not followed.
+const MAX_SET: usize = 64;
+
+/// What the oracle has to know of bench and product.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// Edition judged.
+    pub edition: Edition,
+    /// Signature in use.
+    pub mode: ProtMode,
+    /// FS-PDout in octets.
+    pub pd_out: usize,
+    /// FS-PDin in octets.
+    pub pd_in: usize,
+    /// FSP_Port.
+    pub port: Port,
+    /// Reading of the start value (PIXIT, A02).
+    pub reading: Reading,
+    /// FSP_Watchdog in nanoseconds.
+    pub watchdog_ns: u64,
+    /// Tick of the product's timer in nanoseconds: widens the window on both ends (A24).
+    pub tick_ns: u64,
+    /// How late an expiry may show, in nanoseconds (A24).
+    pub margin_ns: u64,
+    /// Uncertainty of a time stamp in nanoseconds.
+    pub uncertainty_ns: u64,
+    /// Exchanges an answer may take to appear.
+    pub latency: u64,
+    /// How long after FSP parameterization the SCL may take to start, in nanoseconds.
+    pub scl_start_ns: u64,
+    /// Tolerances in force.
+    pub allowed: Mask,
+    /// The application services can be observed.
+    pub app: bool,
+}
+
+/// The output services of the application as reported last.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct App {
+    /// PDout_D.
+    pub pdout_d: Option<Octets>,
+    /// setSD_DC.
+    pub set_sd_dc: Option<bool>,
+    /// ChFAckReq_DC.
+    pub ch_f_ack_req_dc: Option<bool>,
+    /// SCL_Fault.
+    pub scl_fault: Option<bool>,
+}
+
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+enum Phase {
+    /// No supply: nothing is judged.
+    Off,
+    /// Supplied, FSP parameterization not done or refused: no answer may come.
+    Idle,
+    /// FSP parameterization accepted at this time: states 20 and on.
+    Ready { since: u64 },
+}
+
+/// A received SPDU that is not all zero.
+#[derive(Copy, Clone)]
+struct Incoming {
+    received: Received,
+    pd: Pd,
+}
+
+/// The oracle.
+#[derive(Debug)]
+pub struct DeviceOracle {
+    setup: Setup,
+    phase: Phase,
+    configs: Vec<Config>,
+    stepped: Vec<Config>,
+    /// Exchanges so far.
+    exchange: u64,
+    last_at: u64,
+    /// Values of PDin_D since power-on; the generation counts them.
+    pdin: Vec<Pd>,
+    sdset_ds: bool,
+    sdset_ds_changed: bool,
+    /// Of earlier power cycles in the same case.
+    taken_before: [u64; 12],
+    used_before: Mask,
+}
+
+impl DeviceOracle {
+    /// For a DUT without supply.
+    pub fn new(setup: Setup) -> DeviceOracle {
+        DeviceOracle {
+            pdin: vec![Pd::safe(setup.pd_in)],
+            setup,
+            phase: Phase::Off,
+            configs: Vec::new(),
+            stepped: Vec::new(),
+            exchange: 0,
+            last_at: 0,
+            sdset_ds: false,
+            sdset_ds_changed: false,
+            taken_before: [0; 12],
+            used_before: Mask::NONE,
+        }
+    }
+
+    /// What it judges by.
+    pub const fn setup(&self) -> &Setup {
+        &self.setup
+    }
+
+    /// Supply on or off. The machine of before is gone; its transitions and tolerances stay counted.
+    pub fn power(&mut self, on: bool) {
+        self.taken_before = self.taken();
+        self.used_before = self.used();
+        self.configs.clear();
+        self.pdin = vec![Pd::safe(self.setup.pd_in)];
+        self.sdset_ds = false;
+        self.sdset_ds_changed = false;
+        self.phase = if on { Phase::Idle } else { Phase::Off };
+    }
+
+    /// The FSP parameterization has been accepted: the SCL may start.
+    pub fn parameterized(&mut self, at: u64) {
+        self.phase = Phase::Ready { since: at };
+        self.configs = vec![Config::new(Device::new(Readings::default()), self.setup.pd_out, self.exchange)];
+    }
+
+    /// An input service of the application was set.
+    pub fn input(&mut self, service: Service, value: &Octets) {
+        match service {
+            Service::PdinD => self.pdin.extend(Pd::new(value.as_slice())),
+            Service::SdsetDs => {
+                self.sdset_ds_changed |= self.sdset_ds != value.is_set();
+                self.sdset_ds = value.is_set();
+            }
+            _ => {}
+        }
+    }
+
+    /// One exchange: what the DUT received, the image it presented, and its application services afterwards.
+    ///
+    /// # Errors
+    /// The [`Mismatch`] when no configuration explains it. The set stays as it was before, so nothing further can be judged.
+    pub fn exchange(
+        &mut self,
+        at: u64,
+        received: Option<&[u8]>,
+        image: Option<&[u8]>,
+        app: &App,
+    ) -> Result<(), Mismatch> {
+        self.exchange += 1;
+        let image = image.filter(|octets| octets.iter().any(|octet| *octet != 0));
+        match self.phase {
+            Phase::Off => return Ok(()),
+            Phase::Idle => return self.idle(image, app),
+            Phase::Ready { .. } => {}
+        }
+        let incoming = received.and_then(|octets| self.read(octets));
+        let mut before = std::mem::take(&mut self.configs);
+        let mut stepped = std::mem::take(&mut self.stepped);
+        stepped.clear();
+        for config in before.drain(..) {
+            self.step(config, at, incoming, &mut stepped);
+        }
+        if incoming.is_some() && stepped.iter().any(|config| !config.via[0].is_empty()) {
+            self.sdset_ds_changed = false;
+        }
+        self.last_at = at;
+        let verdict = self.observe(&mut stepped, image, app);
+        self.stepped = before;
+        self.configs = stepped;
+        verdict
+    }
+
+    fn idle(&self, image: Option<&[u8]>, app: &App) -> Result<(), Mismatch> {
+        let fail = |kind: &str, clause: &str, expected: &str, observed: String| {
+            let (kind, clause, expected) = (kind.to_owned(), clause.to_owned(), expected.to_owned());
+            Err(Mismatch { verdict: Verdict::Fail, kind, clause, expected, observed })
+        };
+        if let Some(octets) = image {
+            return fail("idle", "11.5.3, 11.5.7", "an image of all zero: the SCL has not been started", hex(octets));
+        }
+        match app.pdout_d {
+            Some(pdout) if pdout.as_slice().iter().any(|octet| *octet != 0) => {
+                fail("PDout_D", "11.4.1, 11.5.3", "PDout_D safe: the SCL has not been started", hex(pdout.as_slice()))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn read(&self, octets: &[u8]) -> Option<Incoming> {
+        let view = View::new(octets, self.setup.mode, self.setup.pd_out).ok()?;
+        if view.is_all_zero() {
+            return None;
+        }
+        let intact = view.signature_matches(self.setup.reading) && view.port_num() == self.setup.port.number();
+        Some(Incoming { received: Received { control: view.control(), intact }, pd: Pd::new(view.pd())? })
+    }
+
+    fn step(&self, mut config: Config, at: u64, incoming: Option<Incoming>, out: &mut Vec<Config>) {
+        config.via = Default::default();
+        match config.timer {
+            Some(window) if at >= window.earliest => {
+                if at <= window.latest {
+                    self.receive(config, at, incoming, out);
+                }
+                self.expire(&mut config, at, window);
+                self.receive(config, at, incoming, out);
+            }
+            _ => self.receive(config, at, incoming, out),
+        }
+    }
+
+    fn expire(&self, config: &mut Config, at: u64, window: Window) {
+        let had_comm_err = config.device.get(Var::DcommErr) == 1;
+        let path = config.device.expire();
+        let earliest = window.earliest.max(self.last_at);
+        let latest = window.latest.min(at);
+        let mut next = self.window(earliest, latest);
+        if next.latest < at {
+            // Several expiries since the last exchange: they look like one, and the next may come any time.
+            next = Window { earliest: at, latest: self.window(at, at).latest };
+        }
+        config.timer = Some(next);
+        let mut free = Free::default();
+        if had_comm_err && path.iter().any(|t| t == T(30)) {
+            free.d_comm_err = 33;
+        }
+        config.took(path);
+        self.answer(config, free, path, config.newest().ch_f_ack_req_dc);
+    }
+
+    fn window(&self, started_earliest: u64, started_latest: u64) -> Window {
+        let Setup { watchdog_ns, tick_ns, margin_ns, uncertainty_ns, .. } = self.setup;
+        let slack = tick_ns + uncertainty_ns;
+        Window {
+            earliest: (started_earliest + watchdog_ns).saturating_sub(slack),
+            latest: started_latest + watchdog_ns + slack + margin_ns,
+        }
+    }
+
+    fn receive(&self, mut config: Config, at: u64, incoming: Option<Incoming>, out: &mut Vec<Config>) {
+        let Some(incoming) = incoming else { return out.push(config) };
+        let Received { control, intact } = incoming.received;
+        if config.device.state() == State(20) {
+            let Phase::Ready { since } = self.phase else { return };
+            if at < since + self.setup.scl_start_ns {
+                out.push(config);
+            }
+            let path = config.device.start();
+            config.took(path);
+        }
+        if config.device.is_old(control.mcount) {
+            if !intact && self.allows(29) {
+                let mut tripped = config;
+                tripped.used = tripped.used.with(29);
+                self.process(&mut tripped, at, incoming, false);
+                out.push(tripped);
+            }
+            return out.push(config);
+        }
+        let first = config.device.state() == State(21);
+        if intact && config.device.counter_check(control.mcount) {
+            self.process(&mut config, at, incoming, true);
+            return out.push(config);
+        }
+        if first && intact && control.mcount == 1 && self.setup.edition == Edition::V1_1 && self.allows(31) {
+            let mut accepted = config;
+            accepted.used = accepted.used.with(31);
+            self.process(&mut accepted, at, incoming, true);
+            out.push(accepted);
+        }
+        if intact && !first {
+            // A jump.
+            if config.device.readings().jump_ignored {
+                return out.push(config);
+            }
+            if let Some(ignored) = self.decide(&mut config, 9, |readings| readings.jump_ignored = true) {
+                out.push(ignored);
+            }
+        }
+        let mut ways = [Some(config), None, None, None];
+        if let Some(way) = ways[0].as_mut() {
+            let other = self.decide(way, 8, |readings| readings.last_valid = true);
+            ways[1] = other;
+        }
+        if config.device.state() == State(26) {
+            for index in 0..2 {
+                let other = match ways[index].as_mut() {
+                    Some(way) => self.decide(way, 19, |readings| readings.sequential = true),
+                    None => None,
+                };
+                ways[index + 2] = other;
+            }
+        }
+        for mut way in ways.into_iter().flatten() {
+            self.process(&mut way, at, incoming, false);
+            out.push(way);
+        }
+    }
+
+    /// The first time a reading matters, both are followed; from then on each keeps to its own.
+    fn decide(&self, config: &mut Config, number: u8, read: impl Fn(&mut Readings)) -> Option<Config> {
+        if config.decided.has(number) {
+            return None;
+        }
+        config.decided = config.decided.with(number);
+        if !self.allows(number) {
+            return None;
+        }
+        let mut other = *config;
+        let mut readings = other.device.readings();
+        read(&mut readings);
+        other.device.set_readings(readings);
+        other.used = other.used.with(number);
+        if number == 8 {
+            other.used = other.used.with(16);
+        }
+        Some(other)
+    }
+
+    fn process(&self, config: &mut Config, at: u64, incoming: Incoming, valid: bool) {
+        let first = config.device.state() == State(21);
+        config.device.set_sdset_ds(self.sdset_ds);
+        let path = config.device.process(incoming.received, valid);
+        config.received = incoming.pd;
+        config.timer = Some(self.window(at, at));
+        let mut free = Free::default();
+        let status = config.device.status();
+        if valid && incoming.received.control.set_sd && !status.sd_set {
+            free.sd_set = 11;
+        }
+        if valid && self.sdset_ds_changed {
+            free.sd_set = 21;
+        }
+        if !valid && status.d_timeout {
+            free.d_timeout = if first { 32 } else { 33 };
+        }
+        config.took(path);
+        let asked = valid.then_some(incoming.received.control.ch_f_ack_req);
+        self.answer(config, free, path, asked);
+    }
+
+    fn answer(&self, config: &mut Config, free: Free, path: fsct_protocol::scl::Path, asked: Option<bool>) {
+        let pdout = if config.device.uses_pdout() { config.received } else { Pd::safe(self.setup.pd_out) };
+        let leaves_fault = path.iter().any(|t| t == T(28));
+        let newest = self.pdin.len().saturating_sub(1) as u32;
+        let snapshot = Snapshot {
+            made: self.exchange,
+            status: Some(config.device.status()),
+            free,
+            pdin: (config.newest().pdin.1, newest),
+            pdout,
+            set_sd_dc: (!leaves_fault).then_some(config.device.get(Var::SetSdDc) == 1),
+            ch_f_ack_req_dc: asked,
+            path,
+        };
+        config.push(snapshot);
+    }
+
+    fn observe(&self, stepped: &mut Vec<Config>, image: Option<&[u8]>, app: &App) -> Result<(), Mismatch> {
+        if stepped.len() > MAX_SET {
+            return Err(Mismatch {
+                verdict: Verdict::Inconclusive,
+                kind: "too-many-configurations".into(),
+                clause: String::new(),
+                expected: format!("at most {MAX_SET} configurations to follow"),
+                observed: format!("{}", stepped.len()),
+            });
+        }
+        let malformed = image.and_then(|octets| explain::form(&self.setup, octets));
+        let view = image.and_then(|octets| View::new(octets, self.setup.mode, self.setup.pd_in).ok());
+        let link = |snapshot: &Snapshot| match (&snapshot.status, image) {
+            (None, None) => Some(Mask::NONE),
+            (None, Some(_)) => self.allows(18).then(|| Mask::NONE.with(18)),
+            (Some(_), None) => None,
+            (Some(_), Some(_)) if malformed.is_some() => None,
+            (Some(_), Some(_)) => self.explains(snapshot, view?),
+        };
+        let services = |snapshot: &Snapshot| self.reported(snapshot, app);
+        let mut explained = 0u64;
+        for (index, config) in stepped.iter_mut().enumerate() {
+            if config.observe(self.exchange, self.setup.latency, link, services) {
+                explained |= 1 << index;
+            }
+        }
+        if explained == 0 {
+            let view = view.filter(|_| malformed.is_none());
+            return Err(malformed
+                .unwrap_or_else(|| explain::nearest(&self.setup, stepped, view, app, |range| self.pdin_texts(range))));
+        }
+        let mut index = 0;
+        stepped.retain(|_| {
+            index += 1;
+            explained >> (index - 1) & 1 == 1
+        });
+        merge(stepped);
+        Ok(())
+    }
+
+    fn explains(&self, snapshot: &Snapshot, view: View<'_>) -> Option<Mask> {
+        let expected = snapshot.status?;
+        let seen = view.status();
+        if seen.dcount_i != expected.dcount_i {
+            return None;
+        }
+        let mut used = Mask::NONE;
+        for (expected, seen, free) in [
+            (expected.sd_set, seen.sd_set, snapshot.free.sd_set),
+            (expected.d_comm_err, seen.d_comm_err, snapshot.free.d_comm_err),
+            (expected.d_timeout, seen.d_timeout, snapshot.free.d_timeout),
+        ] {
+            if expected != seen {
+                if free == 0 || !self.allows(free) {
+                    return None;
+                }
+                used = used.with(free);
+            }
+        }
+        if self.setup.app {
+            let (from, to) = snapshot.pdin;
+            let sent = self.pdin.get(from as usize..=to as usize).unwrap_or_default();
+            if !sent.iter().any(|pd| pd.octets() == view.pd()) {
+                let zero = view.pd().iter().all(|octet| *octet == 0);
+                if !(zero && seen.sd_set && self.allows(28)) {
+                    return None;
+                }
+                used = used.with(28);
+            }
+        }
+        Some(used)
+    }
+
+    fn reported(&self, snapshot: &Snapshot, app: &App) -> bool {
+        let agrees = |expected: Option<bool>, seen: Option<bool>| match (expected, seen) {
+            (Some(expected), Some(seen)) => expected == seen,
+            _ => true,
+        };
+        !self.setup.app
+            || (app.pdout_d.is_none_or(|pdout| pdout.as_slice() == snapshot.pdout.octets())
+                && agrees(snapshot.set_sd_dc, app.set_sd_dc)
+                && agrees(snapshot.ch_f_ack_req_dc, app.ch_f_ack_req_dc))
+    }
+
+    /// PDin values an answer may carry, as text, the likeliest first; empty when it is not judged.
+    fn pdin_texts(&self, (from, to): (u32, u32)) -> Vec<String> {
+        if !self.setup.app {
+            return Vec::new();
+        }
+        let range = self.pdin.get(from as usize..=to as usize).unwrap_or_default();
+        range.iter().rev().map(|pd| hex(pd.octets())).collect()
+    }
+
+    fn allows(&self, number: u8) -> bool {
+        self.setup.allowed.has(number)
+    }
+
+    /// The configuration that needs the fewest tolerances.
+    fn best(&self) -> Option<&Config> {
+        self.configs.iter().min_by_key(|config| config.used.len())
+    }
+
+    /// Transitions the DUT took, T20..T31, over the whole case.
+    pub fn taken(&self) -> [u64; 12] {
+        let mut taken = self.taken_before;
+        if let Some(best) = self.best() {
+            taken.iter_mut().zip(best.taken).for_each(|(sum, count)| *sum += u64::from(count));
+        }
+        taken
+    }
+
+    /// Tolerances the DUT made use of, over the whole case.
+    pub fn used(&self) -> Mask {
+        self.used_before.union(self.best().map_or(Mask::NONE, |config| config.used))
+    }
+
+    /// Transitions of the latest exchange.
+    pub fn via(&self) -> impl Iterator<Item = T> + '_ {
+        self.best().into_iter().flat_map(|config| config.via.iter().flat_map(|path| path.iter()))
+    }
+
+    /// The state the DUT is in as far as it can be told; `None` without supply or before FSP parameterization.
+    pub fn state(&self) -> Option<State> {
+        self.best().map(|config| config.device.state())
+    }
+}
+
+/// Configurations with the same future are one; the one with fewer tolerances stays.
+fn merge(configs: &mut Vec<Config>) {
+    if configs.len() < 2 {
+        return;
+    }
+    configs.sort_by_key(|config| config.used.len());
+    let mut kept = 0;
+    for index in 0..configs.len() {
+        let config = configs[index];
+        if !configs[..kept].iter().any(|other| other.same_future(&config)) {
+            configs[kept] = config;
+            kept += 1;
+        }
+    }
+    configs.truncate(kept);
+}

@@ -1,0 +1,14 @@
+//! The always-on oracle: beside a case's own expectations every exchange is compared with the tables of the standard.
+//!
+//! It keeps the *set* of configurations a conformant DUT may be in: races within the uncertainty of time stamps, answers that
+//! take some exchanges to appear, readings that a tolerance allows. An exchange that no configuration explains is a
+//! mismatch, told against the configuration that came closest.
+
+mod config;
+mod device;
+mod explain;
+mod tolerance;
+
+pub use device::{App, DeviceOracle, Setup};
+pub use explain::Mismatch;
+pub use tolerance::{Mask, Stance, Tolerance, Tolerances};

@@ -1,0 +1,146 @@
+//! Which cases run on a DUT, and which do not with the exact term that excluded them.
+
+use crate::case::{Binding, Case};
+use crate::library::{Library, needs};
+use crate::problem::Problem;
+use crate::profile::Profile;
+use fsct_adapters::{Description, Pco, Role};
+use fsct_protocol::Edition;
+
+/// One expanded case.
+#[derive(Clone, Debug)]
+pub struct Planned<'l> {
+    /// The case.
+    pub case: &'l Case,
+    /// The point of its sweep.
+    pub binding: Binding,
+    /// Unique key.
+    pub key: String,
+}
+
+/// What runs, in order.
+#[derive(Debug, Default)]
+pub struct Plan<'l> {
+    /// Cases to run.
+    pub cases: Vec<Planned<'l>>,
+    /// Cases selected but not applicable: key, then the term.
+    pub not_applicable: Vec<(String, String)>,
+}
+
+/// What the user asked for.
+#[derive(Clone, Debug, Default)]
+pub struct Selection {
+    /// Names of suites; empty: all.
+    pub suites: Vec<String>,
+    /// Terms that all have to match: see [`Selection::matches`].
+    pub filter: Vec<String>,
+    /// One edition only.
+    pub edition: Option<Edition>,
+    /// Every n-th case from the i-th on, i from 1.
+    pub shard: Option<(usize, usize)>,
+}
+
+impl Selection {
+    /// Whether a case is selected. A term is `suite:NAME`, `req:R-...`, `covers:T25`, or a text that occurs in the key or
+    /// title, with `*` for anything in between.
+    pub fn matches(&self, planned: &Planned<'_>) -> bool {
+        let Planned { case, key, binding } = planned;
+        (self.suites.is_empty() || self.suites.contains(&case.suite))
+            && self.edition.is_none_or(|edition| binding.variant.edition == edition)
+            && self.filter.iter().all(|term| match term.split_once(':') {
+                Some(("suite", name)) => case.suite == name,
+                Some(("req", id)) => case.requirements.iter().any(|known| known == id),
+                Some(("covers", t)) => case.covers.iter().any(|number| format!("T{number}") == t),
+                _ => occurs(key, term) || occurs(&case.title, term),
+            })
+    }
+}
+
+fn occurs(text: &str, term: &str) -> bool {
+    let mut rest = text;
+    term.split('*').all(|part| match rest.find(part) {
+        Some(at) => {
+            rest = &rest[at + part.len()..];
+            true
+        }
+        None => false,
+    })
+}
+
+/// Plans a run on a DUT that offers and serves this.
+///
+/// # Errors
+/// A [`Problem`] when a sweep is too large.
+pub fn plan<'l>(
+    library: &'l Library,
+    selection: &Selection,
+    profile: &Profile,
+    description: &Description,
+) -> Result<Plan<'l>, Problem> {
+    let mut plan = Plan::default();
+    for case in library.cases() {
+        let expansion = case.expand(&description.offers)?;
+        for binding in expansion.points {
+            let key = format!("{}{}", case.id, binding.key());
+            let planned = Planned { case, binding, key };
+            if !selection.matches(&planned) {
+                continue;
+            }
+            match excluded(library, profile, description, &planned) {
+                Some(term) => plan.not_applicable.push((planned.key, term)),
+                None => plan.cases.push(planned),
+            }
+        }
+        for (binding, term) in expansion.excluded {
+            let key = format!("{}{}", case.id, binding.key());
+            let planned = Planned { case, binding, key };
+            if selection.matches(&planned) {
+                plan.not_applicable.push((planned.key, term));
+            }
+        }
+    }
+    if let Some((index, count)) = selection.shard {
+        let mut position = 0;
+        plan.cases.retain(|_| {
+            position += 1;
+            (position - 1) % count == index - 1
+        });
+    }
+    Ok(plan)
+}
+
+/// The term that excludes a case, if one does.
+fn excluded(library: &Library, profile: &Profile, description: &Description, planned: &Planned<'_>) -> Option<String> {
+    let Planned { case, binding, .. } = planned;
+    if case.role != description.role {
+        return Some(format!("the case is for a {}, the DUT is a {}", case.role, description.role));
+    }
+    let edition = binding.variant.edition;
+    let records: Vec<_> = case.requirements.iter().filter_map(|id| library.ledger.get(id)).collect();
+    if !records.is_empty() && records.iter().all(|record| !record.exists_in(edition)) {
+        return Some(format!("its requirements do not exist in {edition}"));
+    }
+    if let Some(feature) =
+        records.iter().filter_map(|record| record.applies.as_ref()).find(|f| !profile.features.contains(f))
+    {
+        return Some(format!("the profile does not list the feature `{feature}`"));
+    }
+    // Start conditions do without what is not served; the steps of a case cannot.
+    let steps = case.steps(binding, &mut Vec::new());
+    let missing = case.needs.iter().copied().chain(needs(&steps)).find(|pco| !description.pcos.contains(pco));
+    missing.map(|pco| format!("the DUT does not serve `{}`", pco.name()))
+}
+
+/// A stand-in for a DUT that could not be reached, so that every case can be recorded as not run.
+pub fn unreached(role: Role) -> Description {
+    Description {
+        role,
+        ports: 1,
+        pcos: Pco::ALL.to_vec(),
+        offers: crate::library::EVERYTHING.to_vec(),
+        clock: fsct_adapters::Clock { kind: fsct_adapters::ClockKind::Virtual, resolution_ns: 1, uncertainty_ns: 0 },
+        vendor: String::new(),
+        product: "not reached".to_owned(),
+        version: String::new(),
+    }
+}

@@ -1,0 +1,157 @@
+//! What a product declares (PICS and PIXIT) and the bench it stands on: `testcases/profiles/*.yaml`.
+
+use crate::oracle::{Mask, Tolerances};
+use crate::problem::{Problem, Source};
+use crate::tree::Fields;
+use crate::yaml;
+use fsct_adapters::{Description, Role};
+use fsct_protocol::crc::Reading;
+use fsct_protocol::spdu::Port;
+use std::sync::Arc;
+
+/// How the harness parameterizes an FS-Device.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Parameterization {
+    /// Authenticity and protocol record are written, then the verify record.
+    Commissioning,
+    /// The product is commissioned already: only the verify record is written.
+    VerifyRecord,
+    /// The product starts its SCL by itself, with the values of this profile.
+    None,
+}
+
+/// A profile.
+#[derive(Clone, Debug)]
+pub struct Profile {
+    /// Its name.
+    pub name: String,
+    /// Side of the link the product is on.
+    pub role: Role,
+    /// Time between two exchanges, in nanoseconds.
+    pub master_cycle_time_ns: u64,
+    /// Exchanges an answer may take to appear after the SPDU was there.
+    pub answer_latency: u64,
+    /// FSP_Watchdog in milliseconds.
+    pub watchdog_ms: u16,
+    /// FSP_Port.
+    pub port: Port,
+    /// FSP_Authenticity_1.
+    pub authenticity_1: u32,
+    /// FSP_Authenticity_2.
+    pub authenticity_2: u32,
+    /// FSP_TechParCRC; 0 means commissioning.
+    pub tech_par_crc: u32,
+    /// How late a watchdog may show, in MasterCycleTimes (A24).
+    pub watchdog_margin: u64,
+    /// Tick of the product's timer in microseconds (A24).
+    pub timer_tick_us: u64,
+    /// How long the SCL may take to start after FSP parameterization, in milliseconds.
+    pub scl_start_ms: u64,
+    /// Reading of the start value of the signature (A02).
+    pub reading: Reading,
+    /// How the product is parameterized.
+    pub parameterization: Parameterization,
+    /// Features of the product that some requirements are limited to, such as `ossde`.
+    pub features: Vec<String>,
+    /// Tolerances the profile adds.
+    pub tolerate: Mask,
+    /// Tolerances the profile takes away.
+    pub strict: Mask,
+}
+
+impl Profile {
+    /// Reads a profile.
+    ///
+    /// # Errors
+    /// Every problem of the file.
+    pub fn parse(source: &Arc<Source>) -> Result<Profile, Vec<Problem>> {
+        const ROLES: &[(Role, &str)] = &[(Role::Device, "device"), (Role::Master, "master")];
+        const READINGS: &[(Reading, &str)] = &[(Reading::Preset, "preset"), (Reading::LeadingOctet, "leading-octet")];
+        const WAYS: &[(Parameterization, &str)] = &[
+            (Parameterization::Commissioning, "commissioning"),
+            (Parameterization::VerifyRecord, "verify-record"),
+            (Parameterization::None, "none"),
+        ];
+        let root = yaml::parse(source).map_err(|problem| vec![problem])?;
+        let mut problems = Vec::new();
+        let mut fields = Fields::new(source, &root, "a profile", &mut problems);
+        let name = fields.text("profile");
+        let _about = fields.optional("about");
+        let role = fields.word("dut", ROLES);
+        let mut number = |key, range, default| fields.optional_number(key, range).unwrap_or(default);
+        let master_cycle_time_us = number("MasterCycleTime_us", 400..=132_800, 1_000);
+        let answer_latency = number("answer_latency", 0..=8, 0);
+        let watchdog_ms = number("FSP_Watchdog_ms", 1..=65_535, 20) as u16;
+        let port = number("FSP_Port", 1..=255, 1) as u8;
+        let authenticity_1 = number("FSP_Authenticity_1", 0..=0xFFFF_FFFF, 0x1122_3344) as u32;
+        let authenticity_2 = number("FSP_Authenticity_2", 0..=0xFFFF_FFFF, 0) as u32;
+        let tech_par_crc = number("FSP_TechParCRC", 0..=0xFFFF_FFFF, 0) as u32;
+        let watchdog_margin = number("watchdog_margin", 0..=1_000, 2);
+        let timer_tick_us = number("timer_tick_us", 0..=1_000_000, 0);
+        let scl_start_ms = number("SCL_start_ms", 0..=60_000, 0);
+        let reading = fields.optional_word("signature_start", READINGS).unwrap_or_default();
+        let parameterization =
+            fields.optional_word("parameterization", WAYS).unwrap_or(Parameterization::Commissioning);
+        let features = fields.texts("features").into_iter().map(|placed| placed.0).collect();
+        let mut mask = |key| {
+            let mut mask = Mask::NONE;
+            for (text, at) in fields.texts(key) {
+                match Tolerances::number(&text) {
+                    Some(number) => mask = mask.with(number),
+                    None => fields.problem(at, format!("`{text}` is no tolerance, A01 to A38 are")),
+                }
+            }
+            mask
+        };
+        let tolerate = mask("tolerate");
+        let strict = mask("strict");
+        let watchdog_cycles = u64::from(watchdog_ms) * 1_000 / master_cycle_time_us;
+        if watchdog_cycles <= answer_latency + 1 {
+            let message = format!(
+                "FSP_Watchdog of {watchdog_ms} ms is not longer than one SCL cycle ({} exchanges of {master_cycle_time_us} us)",
+                answer_latency + 1
+            );
+            fields.problem(root.at.clone(), message);
+        }
+        fields.finish(&mut problems);
+        match (name, role, Port::new(port)) {
+            (Some((name, _)), Some(role), Some(port)) if problems.is_empty() => Ok(Profile {
+                name,
+                role,
+                master_cycle_time_ns: master_cycle_time_us * 1_000,
+                answer_latency,
+                watchdog_ms,
+                port,
+                authenticity_1,
+                authenticity_2,
+                tech_par_crc,
+                watchdog_margin,
+                timer_tick_us,
+                scl_start_ms,
+                reading,
+                parameterization,
+                features,
+                tolerate,
+                strict,
+            }),
+            _ => Err(problems),
+        }
+    }
+
+    /// FSP_Watchdog in nanoseconds.
+    pub fn watchdog_ns(&self) -> u64 {
+        u64::from(self.watchdog_ms) * 1_000_000
+    }
+
+    /// Margin of A24 in nanoseconds.
+    pub fn margin_ns(&self) -> u64 {
+        self.watchdog_margin * self.master_cycle_time_ns
+    }
+
+    /// What contradicts what the DUT says of itself; empty when they agree.
+    pub fn contradicts(&self, description: &Description) -> Option<String> {
+        (self.role != description.role).then(|| {
+            format!("profile `{}` is for a {}, the DUT says it is a {}", self.name, self.role, description.role)
+        })
+    }
+}

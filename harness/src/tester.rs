@@ -1,0 +1,214 @@
+//! The lower tester against an FS-Device: builds the SPDUs a case asks for, legal and illegal.
+
+use crate::case::model::{Corrupt, Count, Data, Exchange, Field, Image, PortNum, Signature};
+use crate::oracle::Setup;
+use fsct_adapters::Octets;
+use fsct_protocol::ProtMode;
+use fsct_protocol::crc::{Reading, crc16, crc32, signature};
+use fsct_protocol::spdu::{Control, Pd, Wire, inv3, succ};
+use rand_pcg::Pcg64Mcg;
+use rand_pcg::rand_core::Rng;
+
+/// What the tester sent and will count on from.
+pub struct Tester {
+    setup: Setup,
+    rng: Pcg64Mcg,
+    /// MCount of the SPDU sent last.
+    pub count: Option<u8>,
+    /// FS-PDout sent last.
+    pub pdout: Pd,
+    /// Octets sent last; `None`: nothing.
+    pub octets: Option<Octets>,
+    /// When the first copy of the SPDU sent last went out, in nanoseconds.
+    pub first_copy: u64,
+}
+
+impl Tester {
+    /// A tester that has sent nothing.
+    pub fn new(setup: &Setup, rng: Pcg64Mcg) -> Tester {
+        Tester { pdout: Pd::safe(setup.pd_out), setup: setup.clone(), rng, count: None, octets: None, first_copy: 0 }
+    }
+
+    /// Forgets what was sent: the DUT has been switched off.
+    pub fn restart(&mut self) {
+        self.count = None;
+        self.octets = None;
+    }
+
+    /// Octets of a pattern: none of them 0, from the seed.
+    pub fn pattern(&mut self, length: usize) -> Vec<u8> {
+        (0..length).map(|_| 1 + (self.rng.next_u32() % 255) as u8).collect()
+    }
+
+    /// Builds the octets of the next exchange, with a note on what is wrong with them.
+    pub fn build(&mut self, exchange: &Exchange, echo: Option<Octets>) -> (Option<Octets>, String) {
+        let mcount = match exchange.mcount {
+            Count::Next => self.count.map_or(0, succ),
+            Count::Same => self.count.unwrap_or(0),
+            Count::Jump(more) => (0..more).fold(self.count.map_or(0, succ), |count, _| succ(count)),
+            Count::Exactly(count) => count,
+        };
+        match &exchange.image {
+            Image::Spdu => {}
+            Image::Zero => return self.instead(Octets::zero(self.length()), "all octets 0"),
+            Image::Lost => {
+                self.octets = None;
+                return (None, "lost".to_owned());
+            }
+            Image::Echo => return self.instead(echo.unwrap_or_default(), "the DUT's own answer"),
+            Image::Standard => {
+                let octets = self.pattern(self.length());
+                return self.instead(Octets::new(&octets).unwrap_or_default(), "standard process data");
+            }
+            Image::Exactly(octets) => {
+                return self.instead(Octets::new(octets).unwrap_or_default(), "octets of the case");
+            }
+        }
+        let control = Control { mcount, set_sd: exchange.set_sd, ch_f_ack_req: exchange.ch_f_ack_req };
+        let port_num = match exchange.port_num {
+            PortNum::Own => self.setup.port.number(),
+            PortNum::Inverted => self.setup.port.inverted(),
+            PortNum::Foreign => {
+                if self.setup.port.number() == 255 {
+                    254
+                } else {
+                    self.setup.port.number() + 1
+                }
+            }
+            PortNum::Exactly(octet) => octet,
+        };
+        let octet = control.to_octet() | exchange.reserved << 2;
+        let pd = self.data(&exchange.pdout, self.setup.pd_out, &[port_num, octet]);
+        let mut notes = Vec::new();
+        let signature = self.signature(exchange.signature, &pd, port_num, octet);
+        if exchange.signature != Signature::Good {
+            notes.push(format!("signature {:?}", exchange.signature).to_lowercase());
+        }
+        if port_num != self.setup.port.number() {
+            notes.push(format!("PortNum {port_num:02X}"));
+        }
+        let wire = Wire { pd, port_num, octet, signature };
+        let mut emitted = wire.emit(self.setup.mode, self.setup.reading);
+        for bit in self.bits(&exchange.corrupt) {
+            if let Some(octet) = emitted.octets_mut().get_mut(bit / 8) {
+                *octet ^= 0x80 >> (bit % 8);
+                notes.push(format!("bit {bit} inverted"));
+            }
+        }
+        self.count = Some(mcount);
+        self.pdout = pd;
+        self.octets = Octets::new(emitted.octets());
+        (self.octets, notes.join(", "))
+    }
+
+    /// Process data for a direction; `trailer` are the octets between data and signature.
+    pub fn data(&mut self, data: &Data, length: usize, trailer: &[u8]) -> Pd {
+        let octets = match data {
+            Data::Pattern => self.pattern(length),
+            Data::Same => return self.pdout,
+            Data::Exactly(octets) => {
+                let skip = octets.len().saturating_sub(length);
+                let mut padded = vec![0; length.saturating_sub(octets.len())];
+                padded.extend(octets.iter().skip(skip));
+                padded
+            }
+            Data::ZeroSignature => zero_signature(self.setup.mode, self.setup.reading, length, trailer)
+                .unwrap_or_else(|| self.pattern(length)),
+            Data::Safe | Data::Bit(_) => vec![0; length],
+        };
+        Pd::new(&octets).unwrap_or(Pd::safe(length))
+    }
+
+    /// DCount_i that mirrors the octets sent last; `None` when they are no SPDU.
+    pub fn mirror(&self) -> Option<u8> {
+        let octets = self.octets.as_ref()?;
+        octets.as_slice().get(self.setup.pd_out + 1).map(|octet| inv3(octet >> 5))
+    }
+
+    fn length(&self) -> usize {
+        self.setup.mode.spdu_octets(self.setup.pd_out)
+    }
+
+    fn instead(&mut self, octets: Octets, note: &str) -> (Option<Octets>, String) {
+        self.octets = Some(octets);
+        (self.octets, note.to_owned())
+    }
+
+    fn signature(&self, kind: Signature, pd: &Pd, port_num: u8, octet: u8) -> Option<u32> {
+        let mut secured = pd.octets().to_vec();
+        secured.extend([port_num, octet]);
+        let good = signature(self.setup.mode, self.setup.reading, &secured);
+        match kind {
+            Signature::Good => None,
+            Signature::Zero => Some(0),
+            Signature::Inverted => Some(!good),
+            Signature::StartZero => Some(match self.setup.mode {
+                ProtMode::Crc16 => crc16(0, &secured).into(),
+                ProtMode::Crc32 => crc32(0, &secured),
+            }),
+            Signature::Reversed => Some(match self.setup.mode {
+                ProtMode::Crc16 => (good as u16).swap_bytes().into(),
+                ProtMode::Crc32 => good.swap_bytes(),
+            }),
+            Signature::Order => {
+                let end = secured.len();
+                secured.swap(end - 2, end - 1);
+                Some(signature(self.setup.mode, self.setup.reading, &secured))
+            }
+        }
+    }
+
+    fn bits(&mut self, corrupt: &Corrupt) -> Vec<usize> {
+        let pd = 8 * self.setup.pd_out;
+        let (from, count) = match corrupt {
+            Corrupt::Nothing => return Vec::new(),
+            Corrupt::Bits(bits) => return bits.clone(),
+            Corrupt::Field(Field::Data) if pd > 0 => (0, pd),
+            Corrupt::Field(Field::Data | Field::Signature) => (pd + 16, 8 * self.setup.mode.signature_octets()),
+            Corrupt::Field(Field::PortNum) => (pd, 8),
+            Corrupt::Field(Field::Control) => (pd + 14, 2),
+        };
+        vec![from + self.rng.next_u32() as usize % count]
+    }
+}
+
+/// Process data whose computed signature is 0, so that 1 is sent (11.4.7). The signature is an affine map of the data: a
+/// linear system over GF(2) in the last octets. `None` where there is no solution.
+pub fn zero_signature(mode: ProtMode, reading: Reading, length: usize, trailer: &[u8]) -> Option<Vec<u8>> {
+    let raw = |data: &[u8]| {
+        let secured = [data, trailer].concat();
+        match (mode, reading) {
+            (ProtMode::Crc16, Reading::LeadingOctet) => crc16(0x4EAB, &secured).into(),
+            (ProtMode::Crc32, Reading::LeadingOctet) => crc32(0xF4AC_FB13, &secured),
+            (ProtMode::Crc16, _) => crc16(1, &secured).into(),
+            (ProtMode::Crc32, _) => crc32(1, &secured),
+        }
+    };
+    let mut data = vec![0; length];
+    let constant: u32 = raw(&data);
+    // Gaussian elimination: each row is the effect of a set of bits, and that set.
+    let mut basis: Vec<(u32, Vec<usize>)> = Vec::new();
+    for bit in (0..8 * length).rev() {
+        data[bit / 8] = 0x80 >> (bit % 8);
+        let (mut effect, mut bits) = (raw(&data) ^ constant, vec![bit]);
+        data[bit / 8] = 0;
+        for (other, set) in &basis {
+            if effect ^ other < effect {
+                effect ^= other;
+                bits.extend(set);
+            }
+        }
+        if effect != 0 {
+            basis.push((effect, bits));
+            basis.sort_by(|a, b| b.0.cmp(&a.0));
+        }
+    }
+    let mut rest = constant;
+    for (effect, bits) in &basis {
+        if rest ^ effect < rest {
+            rest ^= effect;
+            bits.iter().for_each(|bit| data[bit / 8] ^= 0x80 >> (bit % 8));
+        }
+    }
+    (rest == 0).then_some(data)
+}
