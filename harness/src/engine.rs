@@ -260,6 +260,7 @@ impl<'s, 'd> Engine<'s, 'd> {
         duration.watchdogs * profile.watchdog_ns() as i64
             + duration.cycles * profile.master_cycle_time_ns as i64
             + duration.margins * (profile.margin_ns() as i64 + latency)
+            + duration.guards * (profile.timer_tick_us * 1_000 + self.session.description.clock.uncertainty_ns) as i64
             + duration.ms * 1_000_000
     }
 

@@ -269,6 +269,7 @@ impl Decoder<'_> {
                 "FSP_Watchdog" if open => sum.watchdogs += amount,
                 "MasterCycleTime" if open => sum.cycles += amount,
                 "margin" if open => sum.margins += amount,
+                "guard" if open => sum.guards += amount,
                 "ms" if open && number.is_some() => sum.ms += amount,
                 _ => match word.parse::<i64>() {
                     Ok(value) if open && number.is_none() && (0..=1_000_000).contains(&value) => {
@@ -286,7 +287,7 @@ impl Decoder<'_> {
     fn no_duration(&mut self, text: &str, at: &Range<usize>) -> Option<Duration> {
         self.problem(
             at,
-            format!("`{text}` is no duration, such as `2 FSP_Watchdog - 1 MasterCycleTime` (also `margin`, `5 ms`)"),
+            format!("`{text}` is no duration, such as `2 FSP_Watchdog - 1 MasterCycleTime` (also `margin`, `guard`, `5 ms`)"),
         );
         None
     }

@@ -212,8 +212,10 @@ pub struct Duration {
     pub watchdogs: i64,
     /// Multiples of MasterCycleTime.
     pub cycles: i64,
-    /// Multiples of the margin of A24.
+    /// Multiples of the margin of A24: how late an expiry may show.
     pub margins: i64,
+    /// Multiples of the guard band: tick of the product's timer plus uncertainty of a time stamp.
+    pub guards: i64,
     /// Milliseconds.
     pub ms: i64,
 }
