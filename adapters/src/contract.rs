@@ -7,6 +7,9 @@ use crate::DutError;
 use fsct_protocol::{Edition, ProtMode};
 use std::fmt;
 
+/// The most stimuli one [`Dut::apply`] can number: every position then fits [`Observation::stimulus`].
+pub const MAX_BATCH: usize = 1 << 16;
+
 /// A device under test, however it is reached.
 pub trait Dut: Send {
     /// Says who it is and what it serves.
@@ -19,6 +22,8 @@ pub trait Dut: Send {
     ///
     /// Every [`Stimulus::Exchange`] yields exactly one [`Seen::Image`], the last observation of that stimulus. Every
     /// `Read` and `Write` yields one answer. A stimulus that is not served yields [`Seen::Unsupported`], never nothing.
+    ///
+    /// Callers keep to [`MAX_BATCH`] stimuli; in a longer batch positions start again at 0 after every [`MAX_BATCH`].
     ///
     /// # Errors
     /// [`DutError`] when the answer did not come or was none; the connection is then of no further use.

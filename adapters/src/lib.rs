@@ -1,11 +1,37 @@
 //! The contract with a device under test and every way to reach one.
 //!
 //! This crate moves octets. It knows frames, processes and sockets; it does not know what an SPDU is.
+//!
+//! ```no_run
+//! use fsct_adapters::{Address, Dut, connect};
+//!
+//! let address: Address = "tcp://127.0.0.1:5061?timeout=500ms".parse()?;
+//! let description = connect(&address)?.hello()?;
+//! println!("{:?}", description.product);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
+mod address;
+mod connect;
 mod contract;
 mod error;
+pub mod frame;
+mod listener;
+pub mod message;
+mod process;
+mod recorder;
+mod serve;
+mod socket;
+mod stream;
 
+pub use address::{Address, AddressError};
+pub use connect::{CONNECT_TIMEOUT, connect, connect_within};
 pub use contract::{
-    Clock, ClockKind, Description, Dut, Observation, Octets, Offer, Pco, Role, Seen, Service, Stimulus, Variant,
+    Clock, ClockKind, Description, Dut, MAX_BATCH, Observation, Octets, Offer, Pco, Role, Seen, Service, Stimulus,
+    Variant,
 };
 pub use error::{DutError, Fault};
+pub use listener::{ListenError, Listener, Stop};
+pub use recorder::{Answer, Entry, Happened, Keep, Recorder, Recording};
+pub use serve::{MAX_CONNECTIONS, serve, serve_stream};
+pub use stream::{FLOOD_PER_STIMULUS, FLOOD_SLACK, Peer, REPLY_TIMEOUT, StreamDut};

@@ -154,8 +154,9 @@ impl Run<'_> {
         let Bench { dut, description } = bench;
         let mut session = Session::new(dut.as_mut(), description, self.profile, oracle, self.interrupted);
         let demands = self.demands(planned);
+        let clauses = self.clauses(planned);
         let ran = catch_unwind(AssertUnwindSafe(|| {
-            Engine::new(&mut session, tester, demands).run(&start, &planned.case.start, &steps)
+            Engine::new(&mut session, tester, clauses, demands).run(&start, &planned.case.start, &steps)
         }));
         match ran {
             Ok(outcome) => {
@@ -195,6 +196,17 @@ impl Run<'_> {
     /// Whether anything a case judges is demanded: only then its own expectations can fail a product.
     fn demands(&self, planned: &Planned<'_>) -> bool {
         planned.case.requirements.iter().filter_map(|id| self.library.ledger.get(id)).any(|record| record.can_fail())
+    }
+
+    fn clauses(&self, planned: &Planned<'_>) -> String {
+        let mut clauses = Vec::new();
+        for record in planned.case.requirements.iter().filter_map(|id| self.library.ledger.get(id)) {
+            let clause = record.clause(planned.binding.variant.edition);
+            if !clauses.contains(&clause) {
+                clauses.push(clause);
+            }
+        }
+        clauses.join(", ")
     }
 
     fn record(&self, planned: &Planned<'_>, mut outcome: Outcome, session: Session<'_>) -> CaseRecord {

@@ -33,6 +33,8 @@ pub struct Engine<'s, 'd> {
     session: &'s mut Session<'d>,
     tester: Tester,
     outcome: Outcome,
+    /// Clauses of the requirements the case judges.
+    clauses: String,
     /// Whether failing an expectation fails the case, or is a remark because nothing it judges is demanded.
     demands: bool,
     checks: usize,
@@ -41,7 +43,7 @@ pub struct Engine<'s, 'd> {
 
 impl<'s, 'd> Engine<'s, 'd> {
     /// Ready to begin.
-    pub fn new(session: &'s mut Session<'d>, tester: Tester, demands: bool) -> Engine<'s, 'd> {
+    pub fn new(session: &'s mut Session<'d>, tester: Tester, clauses: String, demands: bool) -> Engine<'s, 'd> {
         let outcome = Outcome {
             verdict: Verdict::Pass,
             execution: Execution::Ok,
@@ -49,7 +51,7 @@ impl<'s, 'd> Engine<'s, 'd> {
             steps: Vec::new(),
             lost: false,
         };
-        Engine { session, tester, outcome, demands, checks: 0, step: 0 }
+        Engine { session, tester, outcome, clauses, demands, checks: 0, step: 0 }
     }
 
     /// Runs start condition, steps and liveness check.
@@ -167,8 +169,12 @@ impl<'s, 'd> Engine<'s, 'd> {
                 let verdict = if self.demands { verdict } else { Verdict::Remark };
                 let kind = format!("expect/{}", check.key);
                 let text = |value: &str| format!("{} {value}", check.key);
-                let clause = expectation.key.clause();
-                self.reason(verdict, &kind, clause, &text(&check.expected), &text(&check.observed));
+                // A start condition is not what the case is about: there the clause is that of the field alone.
+                let clause = match self.step {
+                    0 => expectation.key.clause().to_owned(),
+                    _ => format!("{} ({})", self.clauses, expectation.key.clause()),
+                };
+                self.reason(verdict, &kind, &clause, &text(&check.expected), &text(&check.observed));
             }
             if let Some(record) = self.outcome.steps.last_mut() {
                 record.checks.push(check);

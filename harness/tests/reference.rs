@@ -1,46 +1,77 @@
-//! The embedded reference FS-Device against the whole suite.
+//! The embedded reference FS-Device conforms, at every answer latency; its mutants and dead devices do not.
 
-use fsct_harness::campaign::{Bench, Run};
-use fsct_harness::library::Library;
-use fsct_harness::plan::{Selection, plan};
-use fsct_reference::{FsDevice, Options};
-use fsct_reports::record::Verdict;
-use std::convert::Infallible;
-use std::sync::atomic::AtomicBool;
+mod common;
+
+use common::{library, run, run_with, story};
+use fsct_adapters::Dut;
+use fsct_harness::plan::Selection;
+use fsct_reference::{ConstantDevice, EchoDevice, FsDevice, Mutant, NullDevice, Options};
+use fsct_reports::record::{CaseRecord, Verdict};
+use rstest::rstest;
+
+fn reference(options: Options) -> Box<dyn Dut> {
+    Box::new(FsDevice::new(options))
+}
+
+fn not_passed(cases: Vec<CaseRecord>) -> Vec<CaseRecord> {
+    cases.into_iter().filter(|case| case.verdict != Verdict::Pass).collect()
+}
 
 #[test]
-fn the_reference_device_conforms() {
-    let library = Library::embedded().unwrap_or_else(|problems| {
-        panic!("{}", problems.iter().map(|p| p.render(false)).collect::<Vec<_>>().join("\n"))
-    });
-    let profile = &library.profiles["reference-device"];
-    let connect = || Bench::greet(Box::new(FsDevice::new(Options::default())));
-    let bench = connect().expect("the reference device answers");
-    let plan = plan(&library, &Selection::default(), profile, &bench.description).expect("a plan");
-    let interrupted = AtomicBool::new(false);
-    let run = Run {
-        library: &library,
-        profile,
-        allowed: library.tolerances.in_force(),
-        seed: 1,
-        command: "fsct run".into(),
-        interrupted: &interrupted,
-    };
-    let mut cases = Vec::new();
-    run.execute(&plan, Ok(bench), connect, |case| {
-        cases.push(case);
-        Ok::<(), Infallible>(())
-    })
-    .expect("infallible");
-    for case in &cases {
-        if case.verdict != Verdict::Pass {
-            println!("{} {:?} {:?}", case.key, case.verdict, case.execution);
-            for r in &case.reasons {
-                println!("   step {} [{}] {} | {} | {}", r.step, r.kind, r.clause, r.expected, r.observed);
-            }
-            println!("   {:?}", case.tolerances);
-        }
+fn the_reference_device_conforms_and_takes_every_transition() {
+    let cases = run(&library(), &Selection::default(), || reference(Options::default()));
+    for number in 20..=31 {
+        let transition = format!("T{number}");
+        assert!(cases.iter().any(|case| case.transitions.contains_key(&transition)), "{transition} was never taken");
     }
-    assert!(cases.len() >= 4);
-    assert!(cases.iter().all(|case| case.verdict == Verdict::Pass));
+    for wanted in [
+        "edition=v1.1,mode=crc16",
+        "edition=v1.1,mode=crc32",
+        "edition=iec2022,mode=crc16",
+        "edition=iec2022,mode=crc32",
+    ] {
+        assert!(cases.iter().any(|case| case.key.contains(wanted)), "{wanted} was never run");
+    }
+    let others = not_passed(cases);
+    assert!(others.is_empty(), "{}", story(&others));
+}
+
+#[rstest]
+#[case("device-late-1", 1)]
+#[case("device-late-3", 3)]
+fn an_answer_may_take_some_exchanges(#[case] profile: &str, #[case] latency: u8) {
+    let make = || reference(Options { latency, ..Options::default() });
+    let others = not_passed(run_with(&library(), &Selection::default(), profile, make));
+    assert!(others.is_empty(), "{}", story(&others));
+}
+
+#[rstest]
+#[case(Mutant::WrongSeed, "11.4.7")]
+#[case(Mutant::ZeroNotReplaced, "11.4.7")]
+#[case(Mutant::PortNotInverted, "11.4.5")]
+#[case(Mutant::CounterCheckMissing, "11.5.3 Table 40 T25")]
+#[case(Mutant::SdCycles2, "11.5.3 Table 40 T22")]
+#[case(Mutant::DTimeoutNeverCleared, "11.5.3 Table 40 T29")]
+#[case(Mutant::PdoutLiveDuringSdCycles, "11.3.3 Table 29, 11.5.3 Table 40 T22")]
+#[case(Mutant::WatchdogDoubled, "11.5.5")]
+#[case(Mutant::DCommErrNeverReported, "11.5.3 Table 40 T25")]
+#[case(Mutant::SetSdIgnored, "11.5.3 Table 40 T22")]
+fn each_mutant_fails_and_the_clause_is_named(#[case] mutant: Mutant, #[case] clause: &str) {
+    let make = || reference(Options { mutant: Some(mutant), ..Options::default() });
+    let failed: Vec<CaseRecord> =
+        run(&library(), &Selection::default(), make).into_iter().filter(|case| case.verdict == Verdict::Fail).collect();
+    assert!(!failed.is_empty(), "{} fails no case", mutant.name());
+    let named = |case: &&CaseRecord| case.reasons.first().is_some_and(|reason| reason.clause.contains(clause));
+    assert!(failed.iter().filter(named).count() > 0, "{}: {}", mutant.name(), story(&failed[..failed.len().min(20)]));
+}
+
+#[rstest]
+#[case::null(|| Box::<NullDevice>::default() as Box<dyn Dut>)]
+#[case::echo(|| Box::<EchoDevice>::default() as Box<dyn Dut>)]
+#[case::constant(|| Box::<ConstantDevice>::default() as Box<dyn Dut>)]
+fn a_dead_device_passes_no_case(#[case] make: fn() -> Box<dyn Dut>) {
+    let cases = run(&library(), &Selection::default(), make);
+    assert!(!cases.is_empty());
+    let passed: Vec<CaseRecord> = cases.into_iter().filter(|case| case.verdict <= Verdict::Remark).collect();
+    assert!(passed.is_empty(), "{}", story(&passed));
 }

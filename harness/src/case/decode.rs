@@ -287,7 +287,9 @@ impl Decoder<'_> {
     fn no_duration(&mut self, text: &str, at: &Range<usize>) -> Option<Duration> {
         self.problem(
             at,
-            format!("`{text}` is no duration, such as `2 FSP_Watchdog - 1 MasterCycleTime` (also `margin`, `guard`, `5 ms`)"),
+            format!(
+                "`{text}` is no duration, such as `2 FSP_Watchdog - 1 MasterCycleTime` (also `margin`, `guard`, `5 ms`)"
+            ),
         );
         None
     }

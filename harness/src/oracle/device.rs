@@ -505,7 +505,7 @@ fn merge(configs: &mut Vec<Config>) {
     let mut kept = 0;
     for index in 0..configs.len() {
         let config = configs[index];
-        if !configs[..kept].iter().any(|other| other.same_future(&config)) {
+        if !configs[..kept].iter_mut().any(|other| other.absorb(&config)) {
             configs[kept] = config;
             kept += 1;
         }

@@ -1,0 +1,100 @@
+//! Observations in the payload of [`OBSERVED`](super::OBSERVED): a flag octet, then stimulus, time and TLV of each.
+
+use super::{Cursor, Malformed, put};
+use crate::{Observation, Octets, Seen, Service};
+
+const IMAGE: u8 = 1;
+const SERVICE: u8 = 2;
+const VALUE: u8 = 3;
+const WRITTEN: u8 = 4;
+const REFUSED: u8 = 5;
+const EVENT: u8 = 6;
+const UNSUPPORTED: u8 = 7;
+
+/// Bit 0 of the flags: more frames answer the same request.
+const MORE: u8 = 1;
+
+/// Writes as many of `observations` into `payload` as `limit` octets allow, and says how many these are. When they are
+/// not all, the payload says that more will come.
+pub fn pack_observed(observations: &[Observation], limit: usize, payload: &mut Vec<u8>) -> usize {
+    payload.clear();
+    payload.push(0);
+    let mut packed = 0;
+    for observation in observations {
+        let before = payload.len();
+        payload.extend(observation.stimulus.to_be_bytes());
+        payload.extend(observation.at.to_be_bytes());
+        put_seen(payload, &observation.seen);
+        if payload.len() > limit {
+            payload.truncate(before);
+            break;
+        }
+        packed += 1;
+    }
+    if packed < observations.len()
+        && let Some(flags) = payload.first_mut()
+    {
+        *flags = MORE;
+    }
+    packed
+}
+
+/// Appends the observations of a payload and says whether more will come.
+///
+/// # Errors
+/// [`Malformed`]; what stood before the fault has been appended.
+pub fn unpack_observed(payload: &[u8], observations: &mut Vec<Observation>) -> Result<bool, Malformed> {
+    let mut cursor = Cursor(payload);
+    let [flags] = cursor.array("the flags")?;
+    while !cursor.is_empty() {
+        let stimulus = u16::from_be_bytes(cursor.array("the stimulus of an observation")?);
+        let at = u64::from_be_bytes(cursor.array("the time of an observation")?);
+        let (kind, value) = cursor.tlv("an observation")?;
+        observations.push(Observation { stimulus, at, seen: seen(kind, value)? });
+    }
+    Ok(flags & MORE != 0)
+}
+
+fn put_seen(out: &mut Vec<u8>, seen: &Seen) {
+    match seen {
+        Seen::Image { port, octets: None } => put(out, IMAGE, &[&[*port, 0]]),
+        Seen::Image { port, octets: Some(octets) } => put(out, IMAGE, &[&[*port, 1], octets.as_slice()]),
+        Seen::Service { port, service, value } => put(out, SERVICE, &[&[*port, service.number()], value.as_slice()]),
+        Seen::Value(octets) => put(out, VALUE, &[octets]),
+        Seen::Written => put(out, WRITTEN, &[]),
+        Seen::Refused { error } => put(out, REFUSED, &[&error.to_be_bytes()]),
+        Seen::Event { code, qualifier } => put(out, EVENT, &[&code.to_be_bytes(), &[*qualifier]]),
+        Seen::Unsupported => put(out, UNSUPPORTED, &[]),
+    }
+}
+
+fn seen(kind: u8, value: &[u8]) -> Result<Seen, Malformed> {
+    let length = |field| Malformed::Length { field, found: value.len() };
+    let octets = |octets, field| Octets::new(octets).ok_or(length(field));
+    match (kind, value) {
+        (IMAGE, [port, 0]) => Ok(Seen::Image { port: *port, octets: None }),
+        (IMAGE, [port, 1, image @ ..]) => Ok(Seen::Image { port: *port, octets: Some(octets(image, "an image")?) }),
+        (IMAGE, [_, number, ..]) if *number > 1 => {
+            Err(Malformed::Number { field: "the presence of an image", number: *number })
+        }
+        (IMAGE, _) => Err(length("an image")),
+        (SERVICE, [port, number, value @ ..]) => {
+            let unknown = Malformed::Number { field: "a service", number: *number };
+            let service = Service::from_number(*number).ok_or(unknown)?;
+            Ok(Seen::Service { port: *port, service, value: octets(value, "a service")? })
+        }
+        (SERVICE, _) => Err(length("a service")),
+        (VALUE, value) => Ok(Seen::Value(value.to_vec())),
+        (WRITTEN, []) => Ok(Seen::Written),
+        (WRITTEN, _) => Err(length("the answer to a write")),
+        (REFUSED, [high, low]) => Ok(Seen::Refused { error: u16::from_be_bytes([*high, *low]) }),
+        (REFUSED, _) => Err(length("a refusal")),
+        (EVENT, [high, low, qualifier]) => {
+            Ok(Seen::Event { code: u16::from_be_bytes([*high, *low]), qualifier: *qualifier })
+        }
+        (EVENT, _) => Err(length("an Event")),
+        (UNSUPPORTED, []) => Ok(Seen::Unsupported),
+        (UNSUPPORTED, _) => Err(length("an answer \"unsupported\"")),
+        (number, _) => Err(Malformed::Number { field: "the kind of an observation", number }),
+    }
+}
