@@ -1,6 +1,6 @@
 //! A whole run: connect, preflight, one case after the other, each recorded before the next begins.
 
-use crate::engine::{Engine, Outcome, execution};
+use crate::engine::{Engine, Judging, Outcome, execution};
 use crate::library::Library;
 use crate::oracle::{DeviceOracle, Mask, Setup};
 use crate::plan::{Plan, Planned};
@@ -153,10 +153,13 @@ impl Run<'_> {
         let oracle = DeviceOracle::new(setup);
         let Bench { dut, description } = bench;
         let mut session = Session::new(dut.as_mut(), description, self.profile, oracle, self.interrupted);
-        let demands = self.demands(planned);
-        let clauses = self.clauses(planned);
+        let judging = Judging {
+            clauses: self.clauses(planned),
+            demands: self.demands(planned),
+            shown: self.library.tolerances.shown(),
+        };
         let ran = catch_unwind(AssertUnwindSafe(|| {
-            Engine::new(&mut session, tester, clauses, demands).run(&start, &planned.case.start, &steps)
+            Engine::new(&mut session, tester, judging).run(&start, &planned.case.start, &steps)
         }));
         match ran {
             Ok(outcome) => {
@@ -219,10 +222,15 @@ impl Run<'_> {
             .filter(|number| count(**number) == 0)
             .map(|number| format!("T{number}"))
             .collect();
+        let shown = self.library.tolerances.shown();
+        let used = session.oracle.used();
         if outcome.verdict < Verdict::Inconclusive && outcome.execution == Execution::Ok && !missed.is_empty() {
-            outcome.verdict = Verdict::Inconclusive;
+            // Another reading, let pass, may lead past a transition.
+            let other = used.iter().any(|number| shown.has(number));
+            let verdict = if other { Verdict::Remark } else { Verdict::Inconclusive };
+            outcome.verdict = outcome.verdict.max(verdict);
             outcome.reasons.push(Reason {
-                verdict: Verdict::Inconclusive,
+                verdict,
                 kind: "covers".to_owned(),
                 clause: String::new(),
                 step: outcome.steps.len().saturating_sub(1),
@@ -231,9 +239,8 @@ impl Run<'_> {
                 observed: "it did not, so the case did not show what it is for".to_owned(),
             });
         }
-        let shown = self.library.tolerances.shown();
         let mut tolerances = BTreeMap::new();
-        for number in session.oracle.used().iter().filter(|number| shown.has(*number)) {
+        for number in used.iter().filter(|number| shown.has(*number)) {
             let text = self
                 .library
                 .tolerances

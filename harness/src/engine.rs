@@ -2,6 +2,7 @@
 
 use crate::case::model::*;
 use crate::expect::{self, Before};
+use crate::oracle::Mask;
 use crate::partner::Partner;
 use crate::profile::Parameterization;
 use crate::session::{Reply, Session, Stop};
@@ -28,22 +29,30 @@ pub struct Outcome {
     pub lost: bool,
 }
 
+/// How the expectations of a case weigh.
+#[derive(Clone, Debug)]
+pub struct Judging {
+    /// Clauses of the requirements the case judges.
+    pub clauses: String,
+    /// Whether failing an expectation fails the case, or is a remark because nothing it judges is demanded.
+    pub demands: bool,
+    /// Tolerances whose use is shown as a remark.
+    pub shown: Mask,
+}
+
 /// A case on its way.
 pub struct Engine<'s, 'd> {
     session: &'s mut Session<'d>,
     tester: Tester,
     outcome: Outcome,
-    /// Clauses of the requirements the case judges.
-    clauses: String,
-    /// Whether failing an expectation fails the case, or is a remark because nothing it judges is demanded.
-    demands: bool,
+    judging: Judging,
     checks: usize,
     step: usize,
 }
 
 impl<'s, 'd> Engine<'s, 'd> {
     /// Ready to begin.
-    pub fn new(session: &'s mut Session<'d>, tester: Tester, clauses: String, demands: bool) -> Engine<'s, 'd> {
+    pub fn new(session: &'s mut Session<'d>, tester: Tester, judging: Judging) -> Engine<'s, 'd> {
         let outcome = Outcome {
             verdict: Verdict::Pass,
             execution: Execution::Ok,
@@ -51,7 +60,7 @@ impl<'s, 'd> Engine<'s, 'd> {
             steps: Vec::new(),
             lost: false,
         };
-        Engine { session, tester, outcome, clauses, demands, checks: 0, step: 0 }
+        Engine { session, tester, outcome, judging, checks: 0, step: 0 }
     }
 
     /// Runs start condition, steps and liveness check.
@@ -165,20 +174,34 @@ impl<'s, 'd> Engine<'s, 'd> {
         for expectation in expectations {
             let Some(check) = expect::judge(expectation, before, self.session, &self.tester) else { continue };
             self.checks += 1;
-            if !check.met {
-                let verdict = if self.demands { verdict } else { Verdict::Remark };
+            let weight = if self.judging.demands { verdict } else { Verdict::Remark };
+            if !check.met
+                && let Some(verdict) = self.weigh(expectation.key, weight)
+            {
                 let kind = format!("expect/{}", check.key);
                 let text = |value: &str| format!("{} {value}", check.key);
                 // A start condition is not what the case is about: there the clause is that of the field alone.
                 let clause = match self.step {
                     0 => expectation.key.clause().to_owned(),
-                    _ => format!("{} ({})", self.clauses, expectation.key.clause()),
+                    _ => format!("{} ({})", self.judging.clauses, expectation.key.clause()),
                 };
                 self.reason(verdict, &kind, &clause, &text(&check.expected), &text(&check.observed));
             }
             if let Some(record) = self.outcome.steps.last_mut() {
                 record.checks.push(check);
             }
+        }
+    }
+
+    /// Expectations are written for the default readings. Once the DUT has made use of a tolerance the oracle, which
+    /// knows what else that allows, judges link and application alone: what a case expects there is a remark at most.
+    fn weigh(&self, key: Key, verdict: Verdict) -> Option<Verdict> {
+        let used = self.session.oracle.used();
+        match key {
+            Key::Reply | Key::Event => Some(verdict),
+            _ if used.is_empty() => Some(verdict),
+            _ if used.iter().any(|number| self.judging.shown.has(number)) => Some(Verdict::Remark),
+            _ => None,
         }
     }
 

@@ -1,1 +1,7 @@
-fn main() {}
+//! The `fsct` command.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    ExitCode::SUCCESS
+}

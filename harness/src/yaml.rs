@@ -80,7 +80,9 @@ pub fn parse(source: &Arc<Source>) -> Result<Node, Problem> {
     let raw: Spanned<Raw> = serde_saphyr::from_str_with_options(&source.text, options).map_err(|error| {
         let place = error.location().and_then(|place| {
             let span = place.span();
-            Some(span.byte_offset()? as usize..(span.byte_offset()? + span.byte_len()?) as usize)
+            let exact = span.byte_offset().zip(span.byte_len());
+            let exact = exact.map(|(start, length)| start as usize..(start + length) as usize);
+            exact.or_else(|| octet(&source.text, place.line(), place.column()).map(|at| at..at))
         });
         let text = error.without_snippet().to_string();
         let text = text.rsplit_once(" at line ").map_or(text.as_str(), |(text, _)| text);
@@ -95,6 +97,14 @@ pub fn parse(source: &Arc<Source>) -> Result<Node, Problem> {
         }
     })?;
     Ok(place(raw, &source.text))
+}
+
+/// The octet at a line and column, both from 1.
+fn octet(text: &str, line: u64, column: u64) -> Option<usize> {
+    let (line, column) = (usize::try_from(line).ok()?.checked_sub(1)?, usize::try_from(column).ok()?.checked_sub(1)?);
+    let start: usize = text.split_inclusive('\n').take(line).map(str::len).sum();
+    let rest = text.get(start..)?;
+    Some(start + rest.char_indices().nth(column).map_or(rest.len(), |(at, _)| at))
 }
 
 fn place(raw: Spanned<Raw>, text: &str) -> Node {

@@ -184,7 +184,7 @@ impl Config {
     }
 
     /// Takes the other configuration in when both go on alike from here: they differ in how they got here and, where
-    /// both needed the same tolerances, in when their timers may expire.
+    /// errors found in repetitions (A29) may have restarted the timer at any of them, in when it may expire.
     pub fn absorb(&mut self, other: &Config) -> bool {
         let alike = self.device == other.device
             && self.decided == other.decided
@@ -200,7 +200,7 @@ impl Config {
             return true;
         }
         let (Some(own), Some(others)) = (&mut self.timer, other.timer) else { return false };
-        if self.used.is_empty() || self.used != other.used {
+        if !self.used.has(29) || self.used != other.used {
             return false;
         }
         own.earliest = own.earliest.min(others.earliest);

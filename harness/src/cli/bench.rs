@@ -1,0 +1,49 @@
+//! From an address to a DUT that has said hello.
+
+use crate::campaign::Bench;
+use crate::problem::suggestion;
+use fsct_adapters::{Address, Dut, DutError};
+use fsct_reference::{ConstantDevice, EchoDevice, FsDevice, NullDevice, Options};
+
+/// What `inproc:` can reach.
+const IN_PROCESS: [&str; 4] = ["reference-device", "null-device", "echo-device", "constant-device"];
+
+/// A usable address: for `inproc:` the name and every option are known.
+///
+/// # Errors
+/// One sentence for the user.
+pub fn parse(text: &str) -> Result<Address, String> {
+    let address: Address = text.parse().map_err(|error: fsct_adapters::AddressError| error.to_string())?;
+    if let Address::InProc { name, query } = &address {
+        in_process(name, query)?;
+    }
+    Ok(address)
+}
+
+/// A fresh connection, greeted.
+///
+/// # Errors
+/// [`DutError`] when the DUT is not reached or fails the preflight.
+pub fn connect(address: &Address) -> Result<Bench, DutError> {
+    let dut = match address {
+        Address::InProc { name, query } => in_process(name, query)
+            .map_err(|why| DutError::Unreachable { url: address.to_string(), why })?,
+        address => fsct_adapters::connect(address)?,
+    };
+    Bench::greet(dut)
+}
+
+fn in_process(name: &str, query: &[(String, String)]) -> Result<Box<dyn Dut>, String> {
+    if !IN_PROCESS.contains(&name) {
+        return Err(format!("there is no `inproc:{name}`; {}", suggestion(name, IN_PROCESS)));
+    }
+    if name != "reference-device" && !query.is_empty() {
+        return Err(format!("`inproc:{name}` takes no options"));
+    }
+    Ok(match name {
+        "null-device" => Box::<NullDevice>::default(),
+        "echo-device" => Box::<EchoDevice>::default(),
+        "constant-device" => Box::<ConstantDevice>::default(),
+        _ => Box::new(FsDevice::new(Options::from_query(query).map_err(|error| error.to_string())?)),
+    })
+}

@@ -1,0 +1,53 @@
+//! `fsct check`: is everything sound, without a DUT.
+
+use super::{Cases, print, show};
+use crate::ledger::Class;
+use crate::library::EVERYTHING;
+use std::path::PathBuf;
+
+/// Arguments of `fsct check`.
+#[derive(clap::Args, Debug)]
+pub struct Args {
+    /// Files of cases to check against the rest; none: everything
+    #[arg(value_name = "FILE")]
+    files: Vec<PathBuf>,
+    #[command(flatten)]
+    cases: Cases,
+}
+
+/// Runs the command; the result is the exit code.
+pub fn run(args: &Args) -> u8 {
+    let mut library = match args.cases.load() {
+        Ok(library) => library,
+        Err(code) => return code,
+    };
+    let mut problems = Vec::new();
+    for file in &args.files {
+        if let Err(found) = library.add_suite(file) {
+            problems.extend(found);
+        }
+    }
+    if problems.is_empty() {
+        problems = library.check();
+    }
+    if !args.files.is_empty() {
+        // What the files do to the ledger of the whole is not their fault.
+        let names: Vec<String> = args.files.iter().map(|file| file.display().to_string()).collect();
+        problems.retain(|problem| names.iter().any(|name| problem.place().starts_with(name)));
+    }
+    if !problems.is_empty() {
+        return show(&problems);
+    }
+    let cases = library.cases().count();
+    let points: usize = library.cases().map(|case| case.expand(&EVERYTHING).map_or(0, |all| all.points.len())).sum();
+    print(format!("{cases} cases, {points} points of their sweeps, {} start conditions: sound", library.starts.len()));
+    let records = library.ledger.iter().count();
+    let classes: Vec<String> = Class::ALL
+        .iter()
+        .map(|(class, name)| format!("{} {name}", library.ledger.iter().filter(|record| record.class == *class).count()))
+        .collect();
+    print(format!("{records} requirements: {}", classes.join(", ")));
+    let one_sided = library.ledger.iter().filter(|record| record.dut == "both" && record.class == Class::Tested);
+    print(format!("{} of those tested concern both roles and are judged on the FS-Device only so far", one_sided.count()));
+    0
+}

@@ -1,0 +1,88 @@
+//! `fsct explain ID`: what a case, a requirement or a tolerance says, and what hangs on it.
+
+use super::{Cases, USAGE, fail, print};
+use crate::library::Library;
+use crate::oracle::Tolerances;
+use crate::problem::suggestion;
+use fsct_protocol::Edition;
+
+/// Arguments of `fsct explain`.
+#[derive(clap::Args, Debug)]
+pub struct Args {
+    /// FSD-0231, R-11.5.3-09 or A19
+    id: String,
+    #[command(flatten)]
+    cases: Cases,
+}
+
+/// Runs the command; the result is the exit code.
+pub fn run(args: &Args) -> u8 {
+    let library = match args.cases.load() {
+        Ok(library) => library,
+        Err(code) => return code,
+    };
+    let id = args.id.as_str();
+    if case(&library, id) || requirement(&library, id) || tolerance(&library, id) {
+        return 0;
+    }
+    let known: Vec<&str> = library.cases().map(|case| case.id.as_str()).chain(library.ledger.ids()).collect();
+    fail(USAGE, format!("there is no case, requirement or tolerance `{id}`; {}", suggestion(id, known)))
+}
+
+fn case(library: &Library, id: &str) -> bool {
+    let Some(case) = library.cases().find(|case| case.id == id) else { return false };
+    print(format!("{id}  {}\nsuite {}, {}", case.title, case.suite, case.place()));
+    if let Some(start) = library.starts.iter().find(|start| start.name == case.start) {
+        print(format!("begins at `{}`: {}", start.name, start.about));
+    }
+    for id in &case.requirements {
+        if let Some(record) = library.ledger.get(id) {
+            print(format!("judges {id} ({}, {}): {}", clauses(record), record.level.name(), record.text));
+        }
+    }
+    let covers: Vec<String> = case.covers.iter().map(|number| format!("T{number}")).collect();
+    if !covers.is_empty() {
+        print(format!("covers {}", covers.join(" ")));
+    }
+    if let Some(point) = case.expand(&crate::library::EVERYTHING).ok().and_then(|all| all.points.into_iter().next()) {
+        print(format!("steps at {}", point.key()));
+        case.steps(&point, &mut Vec::new()).iter().for_each(|step| print(format!("  - {}", step.text)));
+    }
+    true
+}
+
+fn requirement(library: &Library, id: &str) -> bool {
+    let Some(record) = library.ledger.get(id) else { return false };
+    print(format!("{id}  {} ({}, for {})", clauses(record), record.level.name(), record.dut));
+    print(&record.text);
+    print(format!("stimulus: {}\nexpected: {}\nclass: {}", record.stimulus, record.expect, record.class.name()));
+    let more = [
+        ("remark (shown, never failed)", &record.remark),
+        ("printed by the base standard only, not judged", &record.base),
+        ("applies to products with", &record.applies),
+        ("doubt", &record.doubt),
+        ("editions differ", &record.differs),
+        ("why", &record.why),
+    ];
+    for (what, text) in more {
+        if let Some(text) = text {
+            print(format!("{what}: {text}"));
+        }
+    }
+    for case in library.cases().filter(|case| case.requirements.iter().any(|known| known == id)) {
+        print(format!("judged by {}  {}", case.id, case.title));
+    }
+    print(&record.place);
+    true
+}
+
+fn tolerance(library: &Library, id: &str) -> bool {
+    let Some(entry) = Tolerances::number(id).and_then(|number| library.tolerances.get(number)) else { return false };
+    print(format!("{id}  {} ({})\n{}", entry.name, entry.stance, entry.text));
+    true
+}
+
+fn clauses(record: &crate::ledger::Requirement) -> String {
+    let of = |edition: Edition| record.clauses.get(edition.name()).map(|clause| format!("{edition} {clause}"));
+    Edition::ALL.into_iter().filter_map(of).collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,47 @@
+//! `fsct list`: the cases there are.
+
+use super::{Cases, print, show};
+use crate::library::EVERYTHING;
+use crate::plan::{Selection, plan, unreached};
+use fsct_adapters::Role;
+
+/// Arguments of `fsct list`.
+#[derive(clap::Args, Debug)]
+pub struct Args {
+    /// Only cases that match, as for `fsct run`
+    #[arg(long, value_name = "EXPR")]
+    filter: Vec<String>,
+    /// Every point of every sweep
+    #[arg(long)]
+    expanded: bool,
+    #[command(flatten)]
+    cases: Cases,
+}
+
+/// Runs the command; the result is the exit code.
+pub fn run(args: &Args) -> u8 {
+    let library = match args.cases.load() {
+        Ok(library) => library,
+        Err(code) => return code,
+    };
+    let Some(profile) = library.profiles.values().find(|profile| profile.role == Role::Device) else {
+        return super::fail(super::USAGE, "the cases come without a profile");
+    };
+    let selection = Selection { filter: args.filter.clone(), ..Selection::default() };
+    let plan = match plan(&library, &selection, profile, &unreached(Role::Device)) {
+        Ok(plan) => plan,
+        Err(problem) => return show(&[problem]),
+    };
+    if args.expanded {
+        plan.cases.iter().for_each(|planned| print(format!("{}  {}", planned.key, planned.case.title)));
+    } else {
+        for case in library.cases() {
+            let selected = plan.cases.iter().filter(|planned| planned.case.id == case.id).count();
+            if selected > 0 {
+                let points = case.expand(&EVERYTHING).map_or(0, |all| all.points.len());
+                print(format!("{}  {points:>4} x  {:<20} {}", case.id, case.suite, case.title));
+            }
+        }
+    }
+    if plan.cases.is_empty() { super::fail(super::NOTHING_RAN, "no case matches") } else { 0 }
+}

@@ -1,0 +1,134 @@
+//! The command line: one file per command, exit codes that never change.
+//!
+//! 0 conformant · 1 failures · 2 usage or invalid input · 3 rig or tool error · 4 nothing ran · 5 inconclusive only
+
+mod bench;
+mod check;
+mod crc;
+mod explain;
+mod list;
+mod report;
+mod run;
+mod simulate;
+mod vectors;
+
+use crate::library::Library;
+use crate::problem::Problem;
+use clap::{Parser, Subcommand};
+use std::io::{IsTerminal, Write as _};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Exit code for wrong usage and invalid input.
+pub const USAGE: u8 = 2;
+/// Exit code for a fault of rig or tool.
+pub const RIG: u8 = 3;
+/// Exit code when nothing ran.
+pub const NOTHING_RAN: u8 = 4;
+
+/// Conformance tests for IO-Link Safety: judges FS-Devices against the standard, case by case, with the clause and the
+/// octets behind every verdict.
+#[derive(Parser)]
+#[command(
+    name = "fsct",
+    version,
+    arg_required_else_help = true,
+    after_help = "Exit codes: 0 conformant, 1 failures, 2 usage or invalid input, 3 rig or tool error, 4 nothing ran, 5 inconclusive"
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Judge a DUT; without --dut the embedded reference FS-Device
+    Run(run::Args),
+    /// List the cases there are
+    List(list::Args),
+    /// Check cases, ledger and profiles without a DUT
+    Check(check::Args),
+    /// Explain a case, a requirement or a tolerance
+    Explain(explain::Args),
+    /// Serve the reference FS-Device on a socket or on stdin and stdout
+    Simulate(simulate::Args),
+    /// Render reports from a record once more
+    Report(report::Args),
+    /// Prove the known answers for the CRC signatures
+    Vectors(vectors::Args),
+    /// Compute the signature of octets
+    Crc(crc::Args),
+}
+
+/// Runs the command of this process.
+pub fn main() -> ExitCode {
+    std::panic::set_hook(Box::new(|panic| {
+        let place = panic.location().map(|place| format!(" ({}:{})", place.file(), place.line())).unwrap_or_default();
+        eprintln!("fsct: a fault of fsct itself, please report it{place}");
+    }));
+    let cli = Cli::parse();
+    let code = std::panic::catch_unwind(|| match cli.command {
+        Command::Run(args) => run::run(&args),
+        Command::List(args) => list::run(&args),
+        Command::Check(args) => check::run(&args),
+        Command::Explain(args) => explain::run(&args),
+        Command::Simulate(args) => simulate::run(&args),
+        Command::Report(args) => report::run(&args),
+        Command::Vectors(args) => vectors::run(&args),
+        Command::Crc(args) => crc::run(&args),
+    });
+    ExitCode::from(code.unwrap_or(RIG))
+}
+
+/// Where cases come from.
+#[derive(clap::Args, Clone, Debug)]
+struct Cases {
+    /// Folder laid out like testcases/ [default: what the binary carries]
+    #[arg(long = "cases", value_name = "DIR")]
+    folder: Option<PathBuf>,
+}
+
+impl Cases {
+    fn load(&self) -> Result<Library, u8> {
+        let library = match &self.folder {
+            Some(folder) => Library::from_folder(folder),
+            None => Library::embedded(),
+        };
+        library.map_err(|problems| show(&problems))
+    }
+}
+
+/// Shows problems on stderr; the result is the exit code for them.
+fn show(problems: &[Problem]) -> u8 {
+    let colour = colour(std::io::stderr().is_terminal());
+    for problem in problems {
+        eprintln!("{}\n", problem.render(colour));
+    }
+    USAGE
+}
+
+/// One sentence on stderr; the result is the exit code given.
+fn fail(code: u8, sentence: impl std::fmt::Display) -> u8 {
+    eprintln!("fsct: {}", printable(&sentence.to_string()));
+    code
+}
+
+/// Prints to stdout; a reader that has gone is no fault.
+fn print(text: impl std::fmt::Display) {
+    let _ = writeln!(std::io::stdout(), "{text}");
+}
+
+/// Whether to colour, with NO_COLOR honoured.
+fn colour(terminal: bool) -> bool {
+    terminal && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
+}
+
+/// Text that may come from a DUT, made harmless for a terminal: control characters and marks that reorder text are shown as
+/// escapes.
+fn printable(text: &str) -> String {
+    let hostile = |c: char| {
+        c.is_control() && c != '\n'
+            || matches!(c, '\u{200B}'..='\u{200F}' | '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}' | '\u{FEFF}')
+    };
+    text.chars().map(|c| if hostile(c) { c.escape_unicode().to_string() } else { c.to_string() }).collect()
+}

@@ -1,0 +1,295 @@
+//! `fsct run`: judges a DUT and leaves the record and the reports.
+
+use super::{Cases, RIG, USAGE, bench, colour, fail, print, printable, show};
+use crate::campaign::{Run, dut_info};
+use crate::oracle::{Mask, Tolerances};
+use crate::plan::{Plan, Selection, plan, unreached};
+use crate::problem::suggestion;
+use crate::profile::Profile;
+use crate::yaml;
+use fsct_protocol::Edition;
+use fsct_reports::record::{CaseRecord, Execution, Footer, Header, SCHEMA, Verdict};
+use fsct_reports::{Journal, Summary};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::collections::BTreeMap;
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Failures told on the terminal; the rest is in the reports.
+const TOLD: usize = 10;
+
+/// Arguments of `fsct run`.
+#[derive(clap::Args, Debug)]
+pub struct Args {
+    /// Names of suites, or files of cases; none: all suites
+    #[arg(value_name = "SUITE")]
+    suites: Vec<String>,
+    /// Device under test: inproc:NAME, exec:PROGRAM ARGS, tcp://HOST:PORT or unix:PATH
+    #[arg(long, value_name = "URL", default_value = "inproc:reference-device")]
+    dut: String,
+    /// Profile of the product: a name the binary carries, or a file
+    #[arg(long, value_name = "PROFILE", default_value = "reference-device")]
+    profile: String,
+    /// Only this edition: v1.1 or iec2022
+    #[arg(long)]
+    edition: Option<Edition>,
+    /// Only cases that match: a text in key or title (* for anything), suite:NAME, req:ID, covers:T25; may be repeated
+    #[arg(long, value_name = "EXPR")]
+    filter: Vec<String>,
+    /// Part I of N of the cases
+    #[arg(long, value_name = "I/N", value_parser = shard)]
+    shard: Option<(usize, usize)>,
+    /// Seed that everything random derives from
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Folder for record and reports
+    #[arg(long, value_name = "DIR", default_value = "fsct-out")]
+    out: PathBuf,
+    /// Let pass what this tolerance describes (A09, ...)
+    #[arg(long, value_name = "ID")]
+    tolerate: Vec<String>,
+    /// Fail what this tolerance would let pass; `all` for every one
+    #[arg(long, value_name = "ID")]
+    strict: Vec<String>,
+    #[command(flatten)]
+    cases: Cases,
+}
+
+fn shard(text: &str) -> Result<(usize, usize), String> {
+    let parts = text.split_once('/').and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
+    parts.filter(|(i, n)| (1..=*n).contains(i)).ok_or_else(|| "a part such as 2/4 is meant".to_owned())
+}
+
+/// Runs the command; the result is the exit code.
+pub fn run(args: &Args) -> u8 {
+    execute(args).unwrap_or_else(|code| code)
+}
+
+fn execute(args: &Args) -> Result<u8, u8> {
+    let mut library = args.cases.load()?;
+    let mut selection = Selection {
+        suites: Vec::new(),
+        filter: args.filter.clone(),
+        edition: args.edition,
+        shard: args.shard,
+    };
+    for suite in &args.suites {
+        if suite.ends_with(".yaml") || suite.ends_with(".yml") {
+            let name = library.add_suite(Path::new(suite)).map_err(|problems| show(&problems))?;
+            let problems = library.check();
+            let own: Vec<_> = problems.into_iter().filter(|problem| problem.place().starts_with(suite)).collect();
+            if !own.is_empty() {
+                return Err(show(&own));
+            }
+            selection.suites.push(name);
+        } else if library.suites.iter().any(|known| known.name == *suite) {
+            selection.suites.push(suite.clone());
+        } else {
+            let known = library.suites.iter().map(|known| known.name.as_str());
+            return Err(fail(USAGE, format!("there is no suite `{suite}`; {}", suggestion(suite, known))));
+        }
+    }
+    let profile = profile(&args.profile, &library.profiles)?;
+    let address = bench::parse(&args.dut).map_err(|why| fail(USAGE, why))?;
+    let allowed = tolerances(args, &profile, &library.tolerances)?;
+
+    let first = bench::connect(&address);
+    let description = match &first {
+        Ok(bench) => bench.description.clone(),
+        Err(error) => {
+            eprintln!("fsct: {}", printable(&error.to_string()));
+            unreached(profile.role)
+        }
+    };
+    if first.is_ok()
+        && let Some(contradiction) = profile.contradicts(&description)
+    {
+        return Err(fail(USAGE, contradiction));
+    }
+    let plan = plan(&library, &selection, &profile, &description).map_err(|problem| show(&[problem]))?;
+    let header = Header {
+        schema: SCHEMA.to_owned(),
+        fsct: env!("CARGO_PKG_VERSION").to_owned(),
+        seed: args.seed,
+        dut: dut_info(&args.dut, &description),
+        profile: profile.name.clone(),
+        planned: plan.cases.len(),
+        not_applicable: plan.not_applicable.clone(),
+        tolerances: in_force(allowed, &library.tolerances),
+    };
+    let interrupted = Arc::new(AtomicBool::new(false));
+    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
+        // The second signal ends the process as usual.
+        let _ = signal_hook::flag::register_conditional_default(signal, interrupted.clone());
+        let _ = signal_hook::flag::register(signal, interrupted.clone());
+    }
+    let run = Run {
+        library: &library,
+        profile: &profile,
+        allowed,
+        seed: args.seed,
+        command: command(args),
+        interrupted: &interrupted,
+    };
+    let bar = progress(plan.cases.len());
+    let mut told = Told { bar: &bar, failures: 0 };
+    let written = (|| {
+        let mut journal = Journal::create(&args.out)?;
+        journal.header(&header)?;
+        let mut cases = 0;
+        run.execute(&plan, first, || bench::connect(&address), |case| {
+            cases += 1;
+            told.case(&case);
+            journal.case(&case)
+        })?;
+        journal.footer(&Footer { cases, interrupted: interrupted.load(Ordering::Relaxed) })
+    })();
+    bar.finish_and_clear();
+    written.map_err(|error| fail(RIG, format!("the record in {} cannot be written: {error}", args.out.display())))?;
+    let summary = fsct_reports::render(&args.out).map_err(|error| fail(RIG, error))?;
+    conclude(args, &plan, &summary, interrupted.load(Ordering::Relaxed));
+    Ok(summary.exit_code())
+}
+
+fn profile(name: &str, known: &BTreeMap<String, Profile>) -> Result<Profile, u8> {
+    if let Some(profile) = known.get(name) {
+        return Ok(profile.clone());
+    }
+    let path = Path::new(name);
+    if !path.exists() && path.extension().is_none() {
+        let help = suggestion(name, known.keys().map(String::as_str));
+        return Err(fail(USAGE, format!("there is no profile `{name}`; {help}")));
+    }
+    let source = yaml::load(path).map_err(|problem| show(&[problem]))?;
+    Profile::parse(&source).map_err(|problems| show(&problems))
+}
+
+fn tolerances(args: &Args, profile: &Profile, table: &Tolerances) -> Result<Mask, u8> {
+    let number = |id: &String| {
+        Tolerances::number(id)
+            .ok_or_else(|| fail(USAGE, format!("`{id}` is no tolerance, A01 to A38 are; see `fsct explain A19`")))
+    };
+    let mut allowed = table.in_force().union(profile.tolerate);
+    profile.strict.iter().for_each(|number| allowed = allowed.without(number));
+    for id in &args.strict {
+        match id.as_str() {
+            "all" => allowed = Mask::NONE,
+            _ => allowed = allowed.without(number(id)?),
+        }
+    }
+    for id in &args.tolerate {
+        allowed = allowed.with(number(id)?);
+    }
+    Ok(allowed)
+}
+
+fn in_force(allowed: Mask, table: &Tolerances) -> BTreeMap<String, String> {
+    let entries = allowed.iter().filter_map(|number| table.get(number));
+    entries.map(|entry| (format!("A{:02}", entry.number), format!("{} ({})", entry.name, entry.stance))).collect()
+}
+
+/// The command line that leads back to a case.
+fn command(args: &Args) -> String {
+    let mut command = format!("fsct run --dut '{}'", args.dut);
+    if args.profile != "reference-device" {
+        command += &format!(" --profile '{}'", args.profile);
+    }
+    if let Some(folder) = &args.cases.folder {
+        command += &format!(" --cases '{}'", folder.display());
+    }
+    for id in &args.strict {
+        command += &format!(" --strict {id}");
+    }
+    for id in &args.tolerate {
+        command += &format!(" --tolerate {id}");
+    }
+    command
+}
+
+fn progress(cases: usize) -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(cases as u64);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
+        bar.set_style(style);
+    }
+    bar
+}
+
+/// Tells failures as they happen.
+struct Told<'b> {
+    bar: &'b ProgressBar,
+    failures: usize,
+}
+
+impl Told<'_> {
+    fn case(&mut self, case: &CaseRecord) {
+        self.bar.inc(1);
+        if case.verdict < Verdict::Inconclusive && case.execution == Execution::Ok {
+            return;
+        }
+        self.failures += 1;
+        if self.failures > TOLD {
+            return;
+        }
+        let word = match (case.execution, case.verdict) {
+            (Execution::Ok, Verdict::Fail) => "fail",
+            (Execution::Ok, _) => "inconclusive",
+            (Execution::Timeout, _) => "timeout",
+            (Execution::DutError, _) => "dut-error",
+            (Execution::RigError, _) => "rig-error",
+            (Execution::ToolError, _) => "tool-error",
+            (Execution::Aborted, _) => "aborted",
+        };
+        let mut text = format!("{word} {}  {}\n", case.key, case.title);
+        if let Some(reason) = case.reasons.first() {
+            let step = case.steps.get(reason.step).map_or(String::new(), |step| format!(" ({})", step.text));
+            if !reason.clause.is_empty() {
+                text += &format!("  clause   {} [{}]\n", reason.clause, reason.kind);
+            }
+            text += &format!("  step {}{step}\n  expected {}\n  observed {}\n", reason.step, reason.expected, reason.observed);
+        }
+        text += &format!("  replay   {}", case.replay);
+        if self.failures == TOLD {
+            text += "\n  (further ones are in the reports)";
+        }
+        self.bar.suspend(|| eprintln!("{}", printable(&text)));
+    }
+}
+
+fn conclude(args: &Args, plan: &Plan<'_>, summary: &Summary, interrupted: bool) {
+    let coloured = colour(std::io::stdout().is_terminal());
+    let mut suites: BTreeMap<&str, usize> = BTreeMap::new();
+    plan.cases.iter().for_each(|planned| *suites.entry(&planned.case.suite).or_default() += 1);
+    for (suite, count) in suites {
+        print(format!("{suite:<22} {count:>5} cases"));
+    }
+    let counts: Vec<String> = summary
+        .verdicts
+        .iter()
+        .filter(|(_, count)| **count > 0)
+        .map(|(verdict, count)| format!("{count} {verdict}"))
+        .collect();
+    let unseen: Vec<&str> =
+        summary.transitions.iter().filter(|(_, count)| **count == 0).map(|(name, _)| name.as_str()).collect();
+    let coverage = if unseen.is_empty() { "every transition taken".to_owned() } else { format!("not taken: {}", unseen.join(" ")) };
+    let verdict = match summary.exit_code() {
+        0 => "conformant",
+        1 => "not conformant",
+        3 => "rig or tool error",
+        4 => "nothing ran",
+        _ => "inconclusive",
+    };
+    let (bold, plain) = if coloured { ("\x1b[1m", "\x1b[0m") } else { ("", "") };
+    print(format!("{bold}{verdict}{plain}: {} cases, {} · {coverage} · seed {}", summary.cases, counts.join(", "), summary.seed));
+    if !plan.not_applicable.is_empty() {
+        print(format!("{} not applicable, with the reason in the report", plan.not_applicable.len()));
+    }
+    if interrupted {
+        print("stopped by the user: the record is valid and partial");
+    }
+    print(format!("report: {}", args.out.join("report.html").display()));
+}

@@ -1,0 +1,57 @@
+//! `fsct simulate device`: the reference FS-Device as a DUT in another process.
+
+use super::{RIG, USAGE, fail};
+use fsct_adapters::{Address, Dut, Listener};
+use fsct_reference::{FsDevice, Options};
+
+/// Arguments of `fsct simulate`.
+#[derive(clap::Args, Debug)]
+pub struct Args {
+    /// What to be
+    role: Role,
+    /// Where to be reached: tcp://HOST:PORT (port 0: any), unix:PATH or stdio
+    #[arg(long, value_name = "URL")]
+    listen: String,
+    /// Be wrong in this way
+    #[arg(long, value_name = "NAME")]
+    mutant: Option<String>,
+    /// Exchanges an answer takes to appear
+    #[arg(long, value_name = "N")]
+    latency: Option<u8>,
+    /// Clock: virtual or real
+    #[arg(long, value_name = "CLOCK")]
+    clock: Option<String>,
+}
+
+#[derive(Copy, Clone, Debug, clap::ValueEnum)]
+enum Role {
+    Device,
+}
+
+/// Runs the command; the result is the exit code.
+pub fn run(args: &Args) -> u8 {
+    let Role::Device = args.role;
+    let mut query = Vec::new();
+    let mut option = |name: &str, value: Option<String>| query.extend(value.map(|value| (name.to_owned(), value)));
+    option("mutant", args.mutant.clone());
+    option("latency", args.latency.map(|latency| latency.to_string()));
+    option("clock", args.clock.clone());
+    let options = match Options::from_query(&query) {
+        Ok(options) => options,
+        Err(error) => return fail(USAGE, error),
+    };
+    let address: Address = match args.listen.parse() {
+        Ok(address) => address,
+        Err(error) => return fail(USAGE, error),
+    };
+    let listener = match Listener::bind(&address) {
+        Ok(listener) => listener,
+        Err(error) => return fail(RIG, error),
+    };
+    // On stdout the frames themselves may go.
+    eprintln!("reference FS-Device at {}", listener.address());
+    match listener.serve(&|| -> Box<dyn Dut> { Box::new(FsDevice::new(options)) }) {
+        Ok(()) => 0,
+        Err(error) => fail(RIG, error),
+    }
+}

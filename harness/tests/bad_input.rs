@@ -1,0 +1,125 @@
+//! Bad files get one clear sentence with place and remedy, and several at once where the parser allows.
+
+use fsct_harness::case;
+use fsct_harness::library::Library;
+use fsct_harness::problem::{Problem, Source};
+use fsct_harness::profile::Profile;
+use fsct_harness::yaml;
+use insta::assert_snapshot;
+use rstest::rstest;
+use std::sync::Arc;
+
+fn source(text: &str) -> Arc<Source> {
+    Arc::new(Source { name: "my.yaml".into(), text: text.into() })
+}
+
+fn told(problems: Vec<Problem>) -> String {
+    problems.iter().map(|problem| problem.render(false)).collect::<Vec<_>>().join("\n\n")
+}
+
+/// A sound case around the keys and steps under test.
+fn suite(keys: &str, steps: &str) -> String {
+    format!(
+        "suite: my\nabout: mine\ncases:\n  - id: MY-0001\n    title: Mine\n    requirements: [R-11.5.3-09]\n    dut: device\n{keys}    start: operate\n    steps:\n{steps}"
+    )
+}
+
+/// What reading and decoding a suite says.
+fn problems(text: &str) -> Vec<Problem> {
+    match case::suite(&source(text)) {
+        Err(problems) => problems,
+        Ok(suite) => {
+            let case = suite.cases.first().expect("one case");
+            let points = case.expand(&fsct_harness::library::EVERYTHING).expect("few points").points;
+            let mut problems = Vec::new();
+            case.steps(points.first().expect("a point"), &mut problems);
+            problems
+        }
+    }
+}
+
+#[test]
+fn a_misspelt_key_is_named_with_its_place() {
+    assert_snapshot!(told(problems(&suite("    sweeps: {x: [1]}\n", "      - exchange: {}\n"))));
+}
+
+#[test]
+fn a_misspelt_field_of_an_spdu_is_named_with_its_place() {
+    assert_snapshot!(told(problems(&suite("", "      - exchange: {MCont: 3}\n        expect: {SDset: 1}\n"))));
+}
+
+#[test]
+fn all_problems_of_a_file_come_at_once() {
+    let steps = "      - exchange: {corrupt: dta, MCount: 9}\n        expect: {SDst: 1, DCount_i: 8}\n      - wait: {until: 3 parsecs}\n      - power: maybe\n      - exchange: {PDout: 5}\n        power: \"on\"\n";
+    assert_snapshot!(told(problems(&suite("", steps))));
+}
+
+#[test]
+fn a_duplicate_key_is_refused() {
+    assert_snapshot!(told(problems(&suite("", "      - exchange: {}\n        expect: {SDset: 1, SDset: 0}\n"))));
+}
+
+#[test]
+fn broken_yaml_is_refused_with_its_place() {
+    assert_snapshot!(told(problems("suite: my\n  about: [mine\n")));
+}
+
+#[test]
+fn an_unknown_sweep_variable_is_named() {
+    assert_snapshot!(told(problems(&suite("    sweep: {flip: [1, 2]}\n", "      - exchange: {corrupt: $flop}\n"))));
+}
+
+#[test]
+fn words_that_exclude_each_other_are_refused() {
+    assert_snapshot!(told(problems(&suite(
+        "",
+        "      - exchange: {times: 3, repeat: 2}\n        expect: {SDset: 1}\n"
+    ))));
+}
+
+#[test]
+fn a_watchdog_shorter_than_a_cycle_is_refused() {
+    let text = "profile: mine\ndut: device\nFSP_Watchdog_ms: 2\nMasterCycleTime_us: 5000\n";
+    assert_snapshot!(told(Profile::parse(&source(text)).expect_err("it cannot run")));
+}
+
+#[test]
+fn a_profile_says_what_it_does_not_know() {
+    let text = "profile: mine\ndut: devize\nFSP_Port: 0\nFSP_Wachdog_ms: 20\nstrict: [A99]\n";
+    assert_snapshot!(told(Profile::parse(&source(text)).expect_err("it is wrong")));
+}
+
+#[rstest]
+#[case::aliases(&format!("a: &a [1,1,1,1,1,1,1,1,1]\n{}", ('b'..='j').map(|c| { let p = (c as u8 - 1) as char; format!("{c}: &{c} [*{p},*{p},*{p},*{p},*{p},*{p},*{p},*{p},*{p}]\n") }).collect::<String>()))]
+#[case::brackets(&"[".repeat(20_000))]
+#[case::braces(&"{a: ".repeat(20_000))]
+#[case::nodes(&"- 1\n".repeat(500_000))]
+#[case::nothing("")]
+#[case::two_documents("a: 1\n---\nb: 2\n")]
+#[case::a_number("5")]
+fn a_hostile_file_is_an_error_and_not_memory(#[case] text: &str) {
+    let told = match yaml::parse(&source(text)) {
+        Err(problem) => vec![problem],
+        Ok(_) => case::suite(&source(text)).expect_err("it is no suite"),
+    };
+    assert!(!told.is_empty());
+    assert!(told.iter().all(|problem| problem.place().starts_with("my.yaml")));
+}
+
+#[test]
+fn a_file_of_100_mb_is_not_read() {
+    let path = std::env::temp_dir().join(format!("fsct-large-{}.yaml", std::process::id()));
+    let file = std::fs::File::create(&path).expect("the folder for temporary files can be written");
+    file.set_len(100 << 20).expect("a sparse file takes no room");
+    let problem = yaml::load(&path).expect_err("too large");
+    std::fs::remove_file(&path).expect("it was made above");
+    assert!(problem.message().contains("104857600 octets"), "{problem}");
+}
+
+#[test]
+fn the_embedded_cases_are_sound() {
+    let library = Library::embedded().unwrap_or_else(|problems| panic!("{}", told(problems)));
+    let problems = library.check();
+    assert!(problems.is_empty(), "{}", told(problems));
+    assert_eq!(library.ledger.iter().count(), 1_139, "nothing of the ledger is dropped");
+}
