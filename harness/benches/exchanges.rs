@@ -9,8 +9,8 @@ use fsct_harness::library::Library;
 use fsct_harness::oracle::{DeviceOracle, Setup};
 use fsct_harness::plan::{Selection, plan};
 use fsct_harness::session::Session;
-use fsct_protocol::fsp::{Authenticity, Protocol, VerifyRecord};
 use fsct_protocol::crc::Reading;
+use fsct_protocol::fsp::{Authenticity, Protocol, VerifyRecord};
 use fsct_protocol::spdu::{Control, OutSpdu, Pd, Port, succ};
 use fsct_protocol::{Edition, ProtMode};
 use fsct_reference::{FsDevice, Options};
@@ -47,7 +47,8 @@ fn spdus(mode: ProtMode) -> Vec<Octets> {
 /// On-request data that start the SCL.
 fn start(dut: &mut FsDevice, mode: ProtMode) -> Vec<Stimulus> {
     let mut observed = Vec::new();
-    let stimuli = [Stimulus::Configure(variant(mode)), Stimulus::Power(true), Stimulus::Read { index: 0x4201, subindex: 4 }];
+    let stimuli =
+        [Stimulus::Configure(variant(mode)), Stimulus::Power(true), Stimulus::Read { index: 0x4201, subindex: 4 }];
     dut.apply(&stimuli, &mut observed).expect("the reference device answers");
     let io = observed.iter().find_map(|seen| match &seen.seen {
         fsct_adapters::Seen::Value(data) => Some(u16::from_be_bytes([data[0], data[1]])),
@@ -73,20 +74,23 @@ fn start(dut: &mut FsDevice, mode: ProtMode) -> Vec<Stimulus> {
 #[divan::bench(args = MODES)]
 fn bare_reference_device(bencher: Bencher, mode: ProtMode) {
     let spdus = spdus(mode);
-    bencher.counter(ItemsCount::new(EXCHANGES)).with_inputs(|| {
-        let mut dut = FsDevice::new(Options::default());
-        let start = start(&mut dut, mode);
-        dut.apply(&start, &mut Vec::new()).expect("it answers");
-        dut
-    }).bench_values(|mut dut| {
-        let mut observed: Vec<Observation> = Vec::new();
-        for octets in &spdus {
-            observed.clear();
-            let exchange = Stimulus::Exchange { port: 1, octets: Some(*octets) };
-            dut.apply(&[Stimulus::Advance { ns: CYCLE_NS }, exchange], &mut observed).expect("it answers");
-        }
-        black_box(observed.len())
-    });
+    bencher
+        .counter(ItemsCount::new(EXCHANGES))
+        .with_inputs(|| {
+            let mut dut = FsDevice::new(Options::default());
+            let start = start(&mut dut, mode);
+            dut.apply(&start, &mut Vec::new()).expect("it answers");
+            dut
+        })
+        .bench_values(|mut dut| {
+            let mut observed: Vec<Observation> = Vec::new();
+            for octets in &spdus {
+                observed.clear();
+                let exchange = Stimulus::Exchange { port: 1, octets: Some(*octets) };
+                dut.apply(&[Stimulus::Advance { ns: CYCLE_NS }, exchange], &mut observed).expect("it answers");
+            }
+            black_box(observed.len())
+        });
 }
 
 #[divan::bench(args = MODES)]
@@ -115,8 +119,7 @@ fn with_oracle_and_trace(bencher: Bencher, mode: ProtMode) {
         let mut dut = FsDevice::new(Options::default());
         let description = dut.hello().expect("it answers");
         let records = start(&mut dut, mode);
-        let mut session =
-            Session::new(&mut dut, &description, profile, DeviceOracle::new(setup.clone()), &interrupted);
+        let mut session = Session::new(&mut dut, &description, profile, DeviceOracle::new(setup.clone()), &interrupted);
         let went: Result<(), fsct_harness::session::Stop> = (|| {
             session.power(false)?;
             session.power(true)?;

@@ -4,7 +4,7 @@
 
 pub mod campaign;
 pub mod case;
-//pub mod cli;
+pub mod cli;
 pub mod engine;
 pub mod expect;
 pub mod ledger;

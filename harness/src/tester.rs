@@ -212,3 +212,35 @@ pub fn zero_signature(mode: ProtMode, reading: Reading, length: usize, trailer: 
     }
     (rest == 0).then_some(data)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rstest::rstest;
+
+    #[rstest]
+    #[case(ProtMode::Crc16, 2, &[1, 0x20])]
+    #[case(ProtMode::Crc16, 3, &[0xFE, 0xC0])]
+    #[case(ProtMode::Crc32, 4, &[1, 0x20])]
+    #[case(ProtMode::Crc32, 25, &[200, 0xE3])]
+    fn process_data_for_a_signature_of_0_are_found(
+        #[case] mode: ProtMode,
+        #[case] length: usize,
+        #[case] trailer: &[u8],
+    ) {
+        let data = zero_signature(mode, Reading::Preset, length, trailer).expect("there is a solution");
+        let secured = [data.as_slice(), trailer].concat();
+        let raw: u32 = match mode {
+            ProtMode::Crc16 => crc16(1, &secured).into(),
+            ProtMode::Crc32 => crc32(1, &secured),
+        };
+        assert_eq!(raw, 0);
+        assert_eq!(signature(mode, Reading::Preset, &secured), 1);
+    }
+
+    #[test]
+    fn where_no_process_data_lead_to_a_signature_of_0_none_are_found() {
+        assert_eq!(zero_signature(ProtMode::Crc32, Reading::Preset, 1, &[1, 0x20]), None);
+        assert_eq!(zero_signature(ProtMode::Crc16, Reading::Preset, 0, &[1, 0x20]), None);
+    }
+}

@@ -142,7 +142,7 @@ fn role(value: &[u8]) -> Result<Role, Malformed> {
 
 fn offer(value: &[u8]) -> Result<Offer, Malformed> {
     let [number, mode, out_min, out_max, in_min, in_max] =
-        *value.as_array::<6>().ok_or(Malformed::Length { field: "an offer", found: value.len() })?;
+        <[u8; 6]>::try_from(value).map_err(|_| Malformed::Length { field: "an offer", found: value.len() })?;
     Ok(Offer {
         edition: edition(number).ok_or(Malformed::Number { field: "the edition of an offer", number })?,
         mode: ProtMode::from_code(mode).ok_or(Malformed::Number { field: "the mode of an offer", number: mode })?,

@@ -14,7 +14,7 @@ const IN_PROCESS: [&str; 4] = ["reference-device", "null-device", "echo-device",
 /// One sentence for the user.
 pub fn parse(text: &str) -> Result<Address, String> {
     let address: Address = text.parse().map_err(|error: fsct_adapters::AddressError| error.to_string())?;
-    if let Address::InProc { name, query } = &address {
+    if let Address::Inproc { name, query } = &address {
         in_process(name, query)?;
     }
     Ok(address)
@@ -26,8 +26,9 @@ pub fn parse(text: &str) -> Result<Address, String> {
 /// [`DutError`] when the DUT is not reached or fails the preflight.
 pub fn connect(address: &Address) -> Result<Bench, DutError> {
     let dut = match address {
-        Address::InProc { name, query } => in_process(name, query)
-            .map_err(|why| DutError::Unreachable { url: address.to_string(), why })?,
+        Address::Inproc { name, query } => {
+            in_process(name, query).map_err(|why| DutError::Unreachable { url: address.to_string(), why })?
+        }
         address => fsct_adapters::connect(address)?,
     };
     Bench::greet(dut)

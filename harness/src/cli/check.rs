@@ -44,10 +44,15 @@ pub fn run(args: &Args) -> u8 {
     let records = library.ledger.iter().count();
     let classes: Vec<String> = Class::ALL
         .iter()
-        .map(|(class, name)| format!("{} {name}", library.ledger.iter().filter(|record| record.class == *class).count()))
+        .map(|(class, name)| {
+            format!("{} {name}", library.ledger.iter().filter(|record| record.class == *class).count())
+        })
         .collect();
     print(format!("{records} requirements: {}", classes.join(", ")));
     let one_sided = library.ledger.iter().filter(|record| record.dut == "both" && record.class == Class::Tested);
-    print(format!("{} of those tested concern both roles and are judged on the FS-Device only so far", one_sided.count()));
+    print(format!(
+        "{} of those tested concern both roles and are judged on the FS-Device only so far",
+        one_sided.count()
+    ));
     0
 }

@@ -69,12 +69,8 @@ pub fn run(args: &Args) -> u8 {
 
 fn execute(args: &Args) -> Result<u8, u8> {
     let mut library = args.cases.load()?;
-    let mut selection = Selection {
-        suites: Vec::new(),
-        filter: args.filter.clone(),
-        edition: args.edition,
-        shard: args.shard,
-    };
+    let mut selection =
+        Selection { suites: Vec::new(), filter: args.filter.clone(), edition: args.edition, shard: args.shard };
     for suite in &args.suites {
         if suite.ends_with(".yaml") || suite.ends_with(".yml") {
             let name = library.add_suite(Path::new(suite)).map_err(|problems| show(&problems))?;
@@ -139,11 +135,16 @@ fn execute(args: &Args) -> Result<u8, u8> {
         let mut journal = Journal::create(&args.out)?;
         journal.header(&header)?;
         let mut cases = 0;
-        run.execute(&plan, first, || bench::connect(&address), |case| {
-            cases += 1;
-            told.case(&case);
-            journal.case(&case)
-        })?;
+        run.execute(
+            &plan,
+            first,
+            || bench::connect(&address),
+            |case| {
+                cases += 1;
+                told.case(&case);
+                journal.case(&case)
+            },
+        )?;
         journal.footer(&Footer { cases, interrupted: interrupted.load(Ordering::Relaxed) })
     })();
     bar.finish_and_clear();
@@ -250,7 +251,10 @@ impl Told<'_> {
             if !reason.clause.is_empty() {
                 text += &format!("  clause   {} [{}]\n", reason.clause, reason.kind);
             }
-            text += &format!("  step {}{step}\n  expected {}\n  observed {}\n", reason.step, reason.expected, reason.observed);
+            text += &format!(
+                "  step {}{step}\n  expected {}\n  observed {}\n",
+                reason.step, reason.expected, reason.observed
+            );
         }
         text += &format!("  replay   {}", case.replay);
         if self.failures == TOLD {
@@ -275,7 +279,11 @@ fn conclude(args: &Args, plan: &Plan<'_>, summary: &Summary, interrupted: bool) 
         .collect();
     let unseen: Vec<&str> =
         summary.transitions.iter().filter(|(_, count)| **count == 0).map(|(name, _)| name.as_str()).collect();
-    let coverage = if unseen.is_empty() { "every transition taken".to_owned() } else { format!("not taken: {}", unseen.join(" ")) };
+    let coverage = if unseen.is_empty() {
+        "every transition taken".to_owned()
+    } else {
+        format!("not taken: {}", unseen.join(" "))
+    };
     let verdict = match summary.exit_code() {
         0 => "conformant",
         1 => "not conformant",
@@ -284,7 +292,12 @@ fn conclude(args: &Args, plan: &Plan<'_>, summary: &Summary, interrupted: bool) 
         _ => "inconclusive",
     };
     let (bold, plain) = if coloured { ("\x1b[1m", "\x1b[0m") } else { ("", "") };
-    print(format!("{bold}{verdict}{plain}: {} cases, {} · {coverage} · seed {}", summary.cases, counts.join(", "), summary.seed));
+    print(format!(
+        "{bold}{verdict}{plain}: {} cases, {} · {coverage} · seed {}",
+        summary.cases,
+        counts.join(", "),
+        summary.seed
+    ));
     if !plan.not_applicable.is_empty() {
         print(format!("{} not applicable, with the reason in the report", plan.not_applicable.len()));
     }

@@ -1,7 +1,7 @@
 //! `fsct simulate device`: the reference FS-Device as a DUT in another process.
 
 use super::{RIG, USAGE, fail};
-use fsct_adapters::{Address, Dut, Listener};
+use fsct_adapters::{Address, AddressError, Dut, Listener, serve};
 use fsct_reference::{FsDevice, Options};
 
 /// Arguments of `fsct simulate`.
@@ -40,18 +40,25 @@ pub fn run(args: &Args) -> u8 {
         Ok(options) => options,
         Err(error) => return fail(USAGE, error),
     };
-    let address: Address = match args.listen.parse() {
-        Ok(address) => address,
-        Err(error) => return fail(USAGE, error),
-    };
-    let listener = match Listener::bind(&address) {
+    let listener = match listen(&args.listen) {
         Ok(listener) => listener,
-        Err(error) => return fail(RIG, error),
+        Err(why) => return fail(USAGE, why),
     };
     // On stdout the frames themselves may go.
-    eprintln!("reference FS-Device at {}", listener.address());
-    match listener.serve(&|| -> Box<dyn Dut> { Box::new(FsDevice::new(options)) }) {
+    match listener.address() {
+        Ok(address) => eprintln!("reference FS-Device at {address}"),
+        Err(_) => eprintln!("reference FS-Device on stdin and stdout"),
+    }
+    match serve(&listener, &|| -> Box<dyn Dut> { Box::new(FsDevice::new(options)) }) {
         Ok(()) => 0,
         Err(error) => fail(RIG, error),
     }
+}
+
+fn listen(place: &str) -> Result<Listener, String> {
+    if place == "stdio" {
+        return Ok(Listener::stdio());
+    }
+    let address: Address = place.parse().map_err(|error: AddressError| error.to_string())?;
+    Listener::bind(&address).map_err(|error| error.to_string())
 }

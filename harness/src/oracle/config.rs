@@ -119,6 +119,17 @@ impl Config {
         &self.snapshots[..self.count]
     }
 
+    /// The answers that may be seen in this exchange: from the last one that is due on.
+    pub fn visible(&self, exchange: u64, latency: u64) -> &[Snapshot] {
+        self.snapshots().get(self.oldest(exchange, latency)..).unwrap_or_default()
+    }
+
+    /// The last answer made so long ago that it has to be visible by now.
+    fn oldest(&self, exchange: u64, latency: u64) -> usize {
+        let due = exchange.saturating_sub(latency);
+        self.snapshots().iter().rposition(|snapshot| snapshot.made <= due).unwrap_or(0)
+    }
+
     /// The newest answer.
     pub fn newest(&self) -> &Snapshot {
         &self.snapshots[self.count - 1]
@@ -164,9 +175,7 @@ impl Config {
         link: impl Fn(&Snapshot) -> Option<Mask>,
         app: impl Fn(&Snapshot) -> bool,
     ) -> bool {
-        // The last answer made at or before this exchange has to be visible by now.
-        let due = exchange.saturating_sub(latency);
-        let oldest = self.snapshots().iter().rposition(|snapshot| snapshot.made <= due).unwrap_or(0);
+        let oldest = self.oldest(exchange, latency);
         let seen = |from: usize, explains: &dyn Fn(&Snapshot) -> Option<Mask>| {
             (from.max(oldest)..self.count).find_map(|index| Some((index, explains(&self.snapshots[index])?)))
         };

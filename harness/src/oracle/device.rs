@@ -397,8 +397,9 @@ impl DeviceOracle {
         }
         if explained == 0 {
             let view = view.filter(|_| malformed.is_none());
-            return Err(malformed
-                .unwrap_or_else(|| explain::nearest(&self.setup, stepped, view, app, |range| self.pdin_texts(range))));
+            return Err(malformed.unwrap_or_else(|| {
+                explain::nearest(&self.setup, stepped, self.exchange, view, app, |range| self.pdin_texts(range))
+            }));
         }
         let mut index = 0;
         stepped.retain(|_| {

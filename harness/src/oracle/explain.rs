@@ -114,13 +114,16 @@ struct Difference {
 pub fn nearest(
     setup: &Setup,
     configs: &[Config],
+    exchange: u64,
     image: Option<View<'_>>,
     app: &App,
     pdin: impl Fn((u32, u32)) -> Vec<String>,
 ) -> Mismatch {
-    let candidates = configs.iter().flat_map(|config| config.snapshots().iter().rev().map(move |snap| (config, snap)));
+    let visible =
+        |config: &'_ Config| config.visible(exchange, setup.latency).iter().rev().copied().collect::<Vec<_>>();
+    let candidates = configs.iter().flat_map(|config| visible(config).into_iter().map(move |snap| (config, snap)));
     let best = candidates
-        .map(|(config, snap)| (differences(setup, snap, image, app, &pdin(snap.pdin)), config, snap))
+        .map(|(config, snap)| (differences(setup, &snap, image, app, &pdin(snap.pdin)), config, snap))
         .filter(|(differences, ..)| !differences.is_empty())
         .min_by_key(|(differences, config, _)| (config.used.len(), differences.len()));
     let Some((differences, config, snap)) = best else {
@@ -135,7 +138,7 @@ pub fn nearest(
             observed: "the answer before it".into(),
         };
     };
-    let timing = timing(config, snap, &differences);
+    let timing = timing(config, &snap, &differences);
     let (kind, clause) = timing.unwrap_or_else(|| {
         let first = differences.first();
         (first.map_or("image", |d| d.field).to_owned(), first.map_or_else(String::new, |d| d.clause.clone()))
@@ -145,7 +148,7 @@ pub fn nearest(
         verdict: Verdict::Fail,
         kind,
         clause,
-        expected: format!("{}{}", join(|d| &d.expected), after(snap)),
+        expected: format!("{}{}", join(|d| &d.expected), after(&snap)),
         observed: join(|d| &d.observed),
     }
 }

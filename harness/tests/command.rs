@@ -1,0 +1,238 @@
+//! The command line: exit codes, records, and DUTs that misbehave.
+
+use assert_cmd::Command;
+use rstest::rstest;
+use std::io::{Read, Write};
+use std::net::TcpListener;
+use std::path::PathBuf;
+
+/// A folder of its own for a test, gone when the test ends.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Folder {
+        let path = std::env::temp_dir().join(format!("fsct-test-{}-{name}", std::process::id()));
+        let _ = std::fs::remove_dir_all(&path);
+        std::fs::create_dir_all(&path).expect("the folder for temporary files can be written");
+        Folder(path)
+    }
+
+    fn file(&self, name: &str, text: &str) -> String {
+        let path = self.0.join(name);
+        std::fs::write(&path, text).expect("it can be written");
+        path.display().to_string()
+    }
+
+    fn text(&self, name: &str) -> String {
+        std::fs::read_to_string(self.0.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+    }
+
+    fn out(&self) -> String {
+        self.0.display().to_string()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn fsct(args: &[&str]) -> Outcome {
+    let output = Command::cargo_bin("fsct").expect("it is built").args(args).output().expect("it runs");
+    Outcome {
+        code: output.status.code().expect("it ends by itself"),
+        out: String::from_utf8_lossy(&output.stdout).into_owned(),
+        err: String::from_utf8_lossy(&output.stderr).into_owned(),
+    }
+}
+
+#[derive(Debug)]
+struct Outcome {
+    code: i32,
+    out: String,
+    err: String,
+}
+
+#[test]
+fn the_first_command_judges_the_reference_device() {
+    let folder = Folder::new("first");
+    let run = fsct(&["run", "--out", &folder.out()]);
+    assert_eq!(run.code, 0, "{run:?}");
+    assert!(run.out.contains("conformant") && run.out.contains("every transition taken"), "{}", run.out);
+    let summary: serde_json::Value = serde_json::from_str(&folder.text("summary.json")).expect("JSON");
+    for key in ["cases", "verdicts", "execution", "transitions", "tolerances", "seed", "dut"] {
+        assert!(summary.get(key).is_some(), "summary.json has no `{key}`");
+    }
+    assert_eq!(summary["verdicts"]["fail"], 0);
+    assert!(folder.text("junit.xml").contains("FSD-0001"));
+    assert!(folder.text("report.html").contains("FSD-0001"));
+}
+
+#[test]
+fn the_same_seed_gives_the_same_octets_and_another_does_not() {
+    let (one, two, three) = (Folder::new("seed-1"), Folder::new("seed-2"), Folder::new("seed-3"));
+    for (folder, seed) in [(&one, "7"), (&two, "7"), (&three, "8")] {
+        assert_eq!(fsct(&["run", "device-signature", "--seed", seed, "--out", &folder.out()]).code, 0);
+    }
+    assert_eq!(one.text("run.jsonl"), two.text("run.jsonl"));
+    assert_ne!(one.text("run.jsonl"), three.text("run.jsonl"));
+}
+
+#[test]
+fn a_mutant_fails_with_the_clause_and_a_line_to_replay_it() {
+    let folder = Folder::new("mutant");
+    let args = ["run", "device-counter", "--dut", "inproc:reference-device?mutant=counter-check-missing"];
+    let run = fsct(&[&args[..], &["--out", &folder.out()]].concat());
+    assert_eq!(run.code, 1, "{run:?}");
+    assert!(run.err.contains("11.5.3 Table 40 T25"), "{}", run.err);
+    let line = run.err.lines().find(|line| line.contains("replay")).expect("a line to replay it");
+    let words: Vec<&str> = line.split('\'').collect();
+    let [_, dut, _, key, ..] = words.as_slice() else { panic!("{line}") };
+    let again = fsct(&["run", "--dut", dut, "--filter", key, "--out", &folder.out()]);
+    assert_eq!(again.code, 1);
+    assert!(again.out.contains("1 cases"), "{}", again.out);
+}
+
+#[test]
+fn a_filter_that_matches_nothing_is_no_success() {
+    let folder = Folder::new("nothing");
+    assert_eq!(fsct(&["run", "--filter", "nothing-matches", "--out", &folder.out()]).code, 4);
+    assert_eq!(fsct(&["list", "--filter", "nothing-matches"]).code, 4);
+}
+
+#[test]
+fn a_dead_port_is_a_fault_of_the_rig_and_no_pass() {
+    let folder = Folder::new("dead-port");
+    // Bound and dropped: nobody listens there.
+    let port = TcpListener::bind("127.0.0.1:0").and_then(|socket| socket.local_addr()).expect("a port").port();
+    let run =
+        fsct(&["run", "--dut", &format!("tcp://127.0.0.1:{port}"), "--filter", "FSD-0001", "--out", &folder.out()]);
+    assert_eq!(run.code, 3, "{run:?}");
+    let summary: serde_json::Value = serde_json::from_str(&folder.text("summary.json")).expect("JSON");
+    assert_eq!(summary["verdicts"]["pass"], 0);
+    assert!(summary["execution"]["rig-error"].as_u64() > Some(0));
+}
+
+#[rstest]
+#[case::unknown_scheme("tpc://127.0.0.1:1", "tcp")]
+#[case::unknown_name("inproc:reference-devise", "reference-device")]
+#[case::unknown_mutant("inproc:reference-device?mutant=wrong-sead", "wrong-seed")]
+fn a_wrong_address_names_the_nearest(#[case] url: &str, #[case] nearest: &str) {
+    let run = fsct(&["run", "--dut", url, "--out", "never-made"]);
+    assert_eq!(run.code, 2, "{run:?}");
+    assert!(run.err.contains(nearest), "{}", run.err);
+}
+
+const MISSPELT: &str = "suite: mine
+about: One case with a misspelt key
+cases:
+  - id: MY-0001
+    title: Mine
+    requirements: [R-11.5.3-09]
+    dut: device
+    start: operate
+    steps:
+      - exchange: {MCount: next, corupt: data}
+        expect: {DCommErr: 1}
+";
+
+#[test]
+fn a_misspelt_key_is_found_with_file_line_and_nearest_name() {
+    let folder = Folder::new("misspelt");
+    let file = folder.file("mine.yaml", MISSPELT);
+    let check = fsct(&["check", &file]);
+    assert_eq!(check.code, 2, "{check:?}");
+    assert!(check.err.contains(&format!("{file}:10:34")) && check.err.contains("`corrupt`"), "{}", check.err);
+    let run = fsct(&["run", &file, "--out", &folder.out()]);
+    assert_eq!(run.code, 2, "{run:?}");
+}
+
+#[test]
+fn a_case_of_ones_own_runs() {
+    let folder = Folder::new("own");
+    let file = folder.file("mine.yaml", &MISSPELT.replace("corupt", "corrupt"));
+    assert_eq!(fsct(&["check", &file]).code, 0);
+    let run = fsct(&["run", &file, "--out", &folder.out()]);
+    assert_eq!(run.code, 0, "{run:?}");
+    assert!(run.out.contains("4 cases"), "{}", run.out);
+}
+
+#[test]
+fn an_unknown_requirement_is_named() {
+    let folder = Folder::new("requirement");
+    let text = MISSPELT.replace("corupt", "corrupt").replace("R-11.5.3-09", "R-11.5.3-90");
+    let check = fsct(&["check", &folder.file("mine.yaml", &text)]);
+    assert_eq!(check.code, 2);
+    assert!(
+        check.err.contains("unknown requirement `R-11.5.3-90`") && check.err.contains("R-11.5.3-"),
+        "{}",
+        check.err
+    );
+}
+
+#[rstest]
+#[case("R-11.5.3-09", "T25")]
+#[case("FSD-0125", "T25")]
+#[case("A19", "sequential")]
+fn explain_knows_it(#[case] id: &str, #[case] says: &str) {
+    let explain = fsct(&["explain", id]);
+    assert_eq!(explain.code, 0);
+    assert!(explain.out.contains(says), "{}", explain.out);
+}
+
+#[test]
+fn known_answers_are_proven() {
+    let vectors = fsct(&["vectors"]);
+    assert_eq!(vectors.code, 0, "{vectors:?}");
+    assert!(vectors.out.contains("0 failed"), "{}", vectors.out);
+}
+
+#[test]
+fn a_signature_is_computed() {
+    assert_eq!(fsct(&["crc", "00", "01", "02"]).out.trim(), "9D56");
+    assert_eq!(fsct(&["crc", "--mode", "crc32", "000102"]).out.trim(), "B7B8B43E");
+    assert_eq!(fsct(&["crc", "--block", "01 0A 0D 02 01 00 06 00 00 00 00"]).out.trim(), "9A28");
+    assert_eq!(fsct(&["crc", "0G"]).code, 2);
+}
+
+/// A peer that does `with` for every connection, for as long as the test lives.
+fn peer(with: impl Fn(std::net::TcpStream) + Send + 'static) -> String {
+    let socket = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let address = socket.local_addr().expect("it is bound");
+    std::thread::spawn(move || socket.incoming().flatten().for_each(&with));
+    format!("tcp://{address}?timeout=200ms")
+}
+
+#[rstest]
+#[case::closes(peer(drop), "dut-error")]
+#[case::hangs(peer(|mut stream| { let _ = stream.read_to_end(&mut Vec::new()); }), "timeout")]
+#[case::garbage(peer(|mut stream| { let _ = stream.write_all(&[0x47; 300_000]); }), "dut-error")]
+#[case::echo(peer(|stream| { let mut from = stream.try_clone().expect("a clone"); let mut to = stream; let _ = std::io::copy(&mut from, &mut to); }), "dut-error")]
+fn a_peer_that_misbehaves_ends_soon_and_passes_nothing(#[case] url: String, #[case] execution: &str) {
+    let folder = Folder::new(&format!("peer-{execution}-{}", url.len() + url.bytes().map(usize::from).sum::<usize>()));
+    let run = fsct(&["run", "--dut", &url, "--filter", "FSD-01", "--out", &folder.out()]);
+    assert_eq!(run.code, 3, "{run:?}");
+    let summary: serde_json::Value = serde_json::from_str(&folder.text("summary.json")).expect("JSON");
+    assert_eq!(summary["verdicts"]["pass"], 0);
+    assert!(summary["execution"][execution].as_u64() > Some(0), "{summary}");
+    assert!(summary["execution"]["aborted"].as_u64() > Some(0), "the rest is not tried: {summary}");
+}
+
+#[test]
+fn another_process_gets_the_same_verdicts() {
+    let (own, other) = (Folder::new("own-process"), Folder::new("other-process"));
+    assert_eq!(fsct(&["run", "--out", &own.out()]).code, 0);
+    let binary = assert_cmd::cargo::cargo_bin("fsct");
+    let url = format!("exec:{} simulate device --listen stdio", binary.display());
+    assert_eq!(fsct(&["run", "--dut", &url, "--out", &other.out()]).code, 0);
+    let verdicts = |folder: &Folder| -> Vec<String> {
+        let text = folder.text("run.jsonl");
+        let cases = text.lines().filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok());
+        cases
+            .filter_map(|line| Some(format!("{} {}", line["case"]["key"].as_str()?, line["case"]["verdict"])))
+            .collect()
+    };
+    assert_eq!(verdicts(&own), verdicts(&other));
+    assert!(verdicts(&own).len() > 1_000);
+}
