@@ -118,9 +118,8 @@ impl FromStr for Address {
                 Ok(Address::Inproc { name: name.to_owned(), query })
             }
             Some(("exec:", rest)) => {
-                let mut words = split_words(rest)
-                    .map_err(|mark| AddressError::Quote { given: text.to_owned(), mark })?
-                    .into_iter();
+                let mut words =
+                    split_words(rest).map_err(|mark| AddressError::Quote { given: text.to_owned(), mark })?.into_iter();
                 let program = words.next().filter(|word| !word.is_empty()).ok_or(missing("a program"))?;
                 Ok(Address::Exec { program, args: words.collect() })
             }

@@ -30,6 +30,16 @@ pub trait Dut: Send {
     fn apply(&mut self, stimuli: &[Stimulus], observed: &mut Vec<Observation>) -> Result<(), DutError>;
 }
 
+impl<D: Dut + ?Sized> Dut for &mut D {
+    fn hello(&mut self) -> Result<Description, DutError> {
+        (**self).hello()
+    }
+
+    fn apply(&mut self, stimuli: &[Stimulus], observed: &mut Vec<Observation>) -> Result<(), DutError> {
+        (**self).apply(stimuli, observed)
+    }
+}
+
 impl<D: Dut + ?Sized> Dut for Box<D> {
     fn hello(&mut self) -> Result<Description, DutError> {
         (**self).hello()

@@ -183,9 +183,5 @@ fn look(octets: &[u8]) -> Found {
     let Some((sent, _)) = rest.split_first_chunk::<4>() else { return Found::Wait };
     let secured = octets.get(SYNC.len()..HEADER + payload.len()).unwrap_or_default();
     let (right, found) = (checksum(secured), u32::from_be_bytes(*sent));
-    if right == found {
-        Found::Frame(length)
-    } else {
-        Found::Reject { octets: length + OVERHEAD, right, found }
-    }
+    if right == found { Found::Frame(length) } else { Found::Reject { octets: length + OVERHEAD, right, found } }
 }

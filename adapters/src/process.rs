@@ -68,12 +68,8 @@ impl Process {
         {
             let group = format!("kill -s KILL -- -{}", self.child.id());
             let quiet = || Stdio::null();
-            let _ = Command::new("/bin/sh")
-                .args(["-c", &group])
-                .stdin(quiet())
-                .stdout(quiet())
-                .stderr(quiet())
-                .status();
+            let _ =
+                Command::new("/bin/sh").args(["-c", &group]).stdin(quiet()).stdout(quiet()).stderr(quiet()).status();
         }
         let _ = self.child.kill();
     }

@@ -104,7 +104,8 @@ impl StreamDut {
     fn send(&mut self, kind: u8, payload: &[u8]) -> Result<u8, DutError> {
         let sequence = self.sequence;
         self.sequence = sequence.wrapping_add(1);
-        let octets = frame::encode(kind, sequence, payload).ok_or_else(|| too_long(payload.len(), frame::MAX_PAYLOAD))?;
+        let octets =
+            frame::encode(kind, sequence, payload).ok_or_else(|| too_long(payload.len(), frame::MAX_PAYLOAD))?;
         // A writing thread that has ended shows as an end of the other direction, or as silence.
         if let Some(requests) = &self.requests {
             let _ = requests.send(octets);
@@ -199,7 +200,9 @@ impl StreamDut {
         let sequence = self.send(message::APPLY, &payload);
         self.payload = payload;
         match count {
-            0 => Err(DutError::Contract { what: format!("it takes {} octets at once, a stimulus has more", self.limits.payload) }),
+            0 => Err(DutError::Contract {
+                what: format!("it takes {} octets at once, a stimulus has more", self.limits.payload),
+            }),
             count => Ok(Pending { sequence: sequence?, first, count }),
         }
     }
@@ -217,7 +220,9 @@ impl StreamDut {
             self.scratch.clear();
             let more = message::unpack_observed(&payload, &mut self.scratch);
             if self.scratch.is_empty() && more == Ok(true) {
-                return Err(DutError::Contract { what: "a frame announces more observations and holds none".to_owned() });
+                return Err(DutError::Contract {
+                    what: "a frame announces more observations and holds none".to_owned(),
+                });
             }
             for mut observation in self.scratch.drain(..) {
                 answers.take(&observation)?;

@@ -133,7 +133,7 @@ fn with_oracle_and_trace(bencher: Bencher, mode: ProtMode) {
             Ok(())
         })();
         went.expect("the reference device conforms");
-        black_box(session.trace.len())
+        black_box(session.recorded())
     });
 }
 

@@ -212,7 +212,7 @@ impl Run<'_> {
         clauses.join(", ")
     }
 
-    fn record(&self, planned: &Planned<'_>, mut outcome: Outcome, session: Session<'_>) -> CaseRecord {
+    fn record(&self, planned: &Planned<'_>, mut outcome: Outcome, mut session: Session<'_>) -> CaseRecord {
         let taken = session.oracle.taken();
         let count = |number: u8| taken.get(usize::from(number).wrapping_sub(20)).copied().unwrap_or(0);
         let missed: Vec<String> = planned
@@ -252,12 +252,12 @@ impl Run<'_> {
             outcome.verdict = outcome.verdict.max(Verdict::Remark);
         }
         let duration_ns = session.now;
-        let (trace, elided, moved) = session.trace.into_entries();
-        for reason in &mut outcome.reasons {
-            reason.entry = reason.entry.map(&moved);
+        let told = session.told();
+        for (reason, at) in outcome.reasons.iter_mut().zip(&outcome.shown_at) {
+            reason.entry = told.exchange_at(*at);
         }
         for step in &mut outcome.steps {
-            step.entries = (moved(step.entries.0), moved(step.entries.1));
+            step.entries = (told.place(step.entries.0), told.place(step.entries.1));
         }
         let mut record = self.blank(planned);
         record.verdict = outcome.verdict;
@@ -269,8 +269,8 @@ impl Run<'_> {
             .map(|number| (format!("T{number}"), count(number)))
             .collect();
         record.steps = outcome.steps;
-        record.trace = trace;
-        record.elided = elided;
+        record.elided = told.elided;
+        record.trace = told.entries;
         record.duration_ns = duration_ns;
         record
     }

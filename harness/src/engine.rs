@@ -23,6 +23,8 @@ pub struct Outcome {
     pub execution: Execution,
     /// Why.
     pub reasons: Vec<Reason>,
+    /// When the exchange behind each reason was, counted from the beginning of the case.
+    pub shown_at: Vec<u64>,
     /// Steps as executed.
     pub steps: Vec<StepRecord>,
     /// The DUT was lost: the connection is of no further use.
@@ -57,6 +59,7 @@ impl<'s, 'd> Engine<'s, 'd> {
             verdict: Verdict::Pass,
             execution: Execution::Ok,
             reasons: Vec::new(),
+            shown_at: Vec::new(),
             steps: Vec::new(),
             lost: false,
         };
@@ -92,12 +95,12 @@ impl<'s, 'd> Engine<'s, 'd> {
         text: String,
         action: impl FnOnce(&mut Engine<'s, 'd>) -> Result<(), Stop>,
     ) -> Result<(), Stopped> {
-        let first = self.session.trace.len();
+        let first = self.session.recorded();
         self.outcome.steps.push(StepRecord { text, executed: true, entries: (first, first), checks: Vec::new() });
         self.session.events.clear();
         let result = action(self);
         if let Some(record) = self.outcome.steps.last_mut() {
-            record.entries.1 = self.session.trace.len();
+            record.entries.1 = self.session.recorded();
         }
         match result {
             Ok(()) if self.outcome.verdict == Verdict::Fail => Err(Stopped),
@@ -140,12 +143,13 @@ impl<'s, 'd> Engine<'s, 'd> {
 
     fn reason(&mut self, verdict: Verdict, kind: &str, clause: &str, expected: &str, observed: &str) {
         self.outcome.verdict = self.outcome.verdict.max(verdict);
+        self.outcome.shown_at.push(self.session.last_exchange);
         self.outcome.reasons.push(Reason {
             verdict,
             kind: kind.to_owned(),
             clause: clause.to_owned(),
             step: self.step,
-            entry: self.session.trace.len().checked_sub(1),
+            entry: None,
             expected: expected.to_owned(),
             observed: observed.to_owned(),
         });
@@ -252,7 +256,7 @@ impl<'s, 'd> Engine<'s, 'd> {
     fn scl_cycle(&mut self, exchange: &Exchange) -> Result<(), Stop> {
         let echo = self.session.image;
         let (octets, note) = self.tester.build(exchange, echo);
-        self.session.trace.note(note);
+        self.session.margin.announce(note);
         let started = self.session.now + self.session.profile.master_cycle_time_ns;
         if exchange.image == Image::Spdu && exchange.mcount != Count::Same {
             self.tester.first_copy = started;

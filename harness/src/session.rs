@@ -2,8 +2,10 @@
 
 use crate::oracle::{App, DeviceOracle, Mismatch};
 use crate::profile::Profile;
-use crate::trace::Trace;
-use fsct_adapters::{ClockKind, Description, Dut, DutError, Observation, Octets, Pco, Seen, Service, Stimulus};
+use crate::trace::{Margin, Told};
+use fsct_adapters::{
+    ClockKind, Description, Dut, DutError, Keep, Observation, Octets, Pco, Recorder, Seen, Service, Stimulus,
+};
 use fsct_protocol::spdu::View;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -51,15 +53,19 @@ pub enum Reply {
 
 /// The hold.
 pub struct Session<'d> {
-    dut: &'d mut dyn Dut,
+    dut: Recorder<&'d mut dyn Dut>,
     /// What the DUT says of itself.
     pub description: &'d Description,
     /// Profile in force.
     pub profile: &'d Profile,
     /// The oracle.
     pub oracle: DeviceOracle,
-    /// What crossed the boundary.
-    pub trace: Trace,
+    /// What stands beside the recording.
+    pub margin: Margin,
+    /// The clock of the DUT when the case began, once it is known.
+    zero: Option<u64>,
+    /// Time of the latest exchange, counted from the beginning of the case.
+    pub last_exchange: u64,
     interrupted: &'d AtomicBool,
     /// Nanoseconds on the clock of the DUT.
     pub now: u64,
@@ -90,11 +96,13 @@ impl<'d> Session<'d> {
         let pdin = Octets::zero(oracle.setup().pd_in);
         let start = Instant::now();
         Session {
-            dut,
+            dut: Recorder::new(dut, Keep::default()),
             description,
             profile,
             oracle,
-            trace: Trace::default(),
+            margin: Margin::default(),
+            zero: None,
+            last_exchange: 0,
             interrupted,
             now: 0,
             pace: (description.clock.kind == ClockKind::Real).then_some((start, start)),
@@ -223,7 +231,6 @@ impl<'d> Session<'d> {
             if let (Stimulus::Advance { ns }, None) = (stimulus, &self.pace) {
                 self.now += ns;
             }
-            self.trace.stimulus(self.now, stimulus);
             while let Some((observation, later)) = rest.split_first()
                 && usize::from(observation.stimulus) == index
             {
@@ -235,6 +242,7 @@ impl<'d> Session<'d> {
     }
 
     fn digest_one(&mut self, stimulus: &Stimulus, observation: &Observation) -> Result<(), Stop> {
+        let zero = *self.zero.get_or_insert(observation.at.saturating_sub(self.now));
         let at = match &self.pace {
             // On a virtual clock the harness knows the time; stamps only tell when within an advance.
             None => self.now,
@@ -250,7 +258,8 @@ impl<'d> Session<'d> {
                 let sent = sent.as_ref().map(Octets::as_slice);
                 let image = octets.as_ref().map(Octets::as_slice);
                 let verdict = self.oracle.exchange(at, sent, image, &self.app);
-                self.trace.exchange(at, sent, image, self.oracle.via());
+                self.last_exchange = observation.at.saturating_sub(zero);
+                self.margin.exchange(observation.at, self.oracle.via());
                 verdict?;
             }
             Seen::Service { service, value, .. } => {
@@ -261,17 +270,15 @@ impl<'d> Session<'d> {
                     Service::SclFault => self.app.scl_fault = Some(value.is_set()),
                     _ => {}
                 }
-                self.trace.service(observation.at, *service, value);
             }
-            Seen::Value(data) => self.replied(at, stimulus, Reply::Value(data.clone())),
-            Seen::Written => self.replied(at, stimulus, Reply::Written),
-            Seen::Refused { error } => self.replied(at, stimulus, Reply::Refused(*error)),
-            Seen::Event { code, qualifier } => {
+            Seen::Value(data) => self.reply = Some(Reply::Value(data.clone())),
+            Seen::Written => self.reply = Some(Reply::Written),
+            Seen::Refused { error } => self.reply = Some(Reply::Refused(*error)),
+            Seen::Event { code, .. } => {
                 self.events.push(*code);
-                self.trace.event(at, *code, *qualifier);
             }
             Seen::Unsupported => match stimulus {
-                Stimulus::Read { .. } | Stimulus::Write { .. } => self.replied(at, stimulus, Reply::Unsupported),
+                Stimulus::Read { .. } | Stimulus::Write { .. } => self.reply = Some(Reply::Unsupported),
                 Stimulus::Other { .. } => {}
                 other => return Err(Stop::Unserved(format!("the DUT does not serve {}", crate::trace::name(other)))),
             },
@@ -279,9 +286,14 @@ impl<'d> Session<'d> {
         Ok(())
     }
 
-    fn replied(&mut self, at: u64, stimulus: &Stimulus, reply: Reply) {
-        self.trace.reply(at, stimulus, &reply);
-        self.reply = Some(reply);
+    /// Entries recorded so far.
+    pub fn recorded(&self) -> usize {
+        self.dut.recording().len()
+    }
+
+    /// What crossed the boundary in this case.
+    pub fn told(&mut self) -> Told {
+        Told::new(&self.dut.take(), std::mem::take(&mut self.margin), self.zero.unwrap_or(0))
     }
 
     /// The image presented last, read as an SPDU; `None` when it is none, too short or all zero.

@@ -1,153 +1,127 @@
-//! What crossed the boundary in one case, as it goes into the record: equal exchanges are counted, and of a very long case
-//! the middle is left out and said so.
+//! What the record says of a case: the recording of what crossed the boundary, with the transitions the oracle saw and the
+//! tester's notes beside it.
 
-use crate::session::Reply;
-use fsct_adapters::{Octets, Service, Stimulus};
+use fsct_adapters::{Answer, Happened, Octets, Recording, Service, Stimulus};
 use fsct_protocol::scl::T;
 use fsct_reports::record::{Entry, What};
 use std::collections::VecDeque;
 
-const HEAD: usize = 200;
-const TAIL: usize = 200;
+/// Margin notes kept: more than a recording keeps entries.
+const NOTES: usize = 2_000;
 
-/// The trace of a case.
+/// What stands beside the exchanges of a recording, by the time of each.
 #[derive(Debug, Default)]
-pub struct Trace {
-    head: Vec<Row>,
-    tail: VecDeque<Row>,
-    elided: usize,
-    note: String,
+pub struct Margin {
+    notes: VecDeque<Note>,
+    /// Notes of the beginning of a very long case; its middle is not kept.
+    head: Vec<Note>,
+    next: String,
 }
 
-/// One row, kept as it came: text is made when the case is recorded.
-#[derive(Clone, Debug, PartialEq)]
-struct Row {
+#[derive(Clone, Debug)]
+struct Note {
     at: u64,
-    count: u64,
-    what: Happened,
     via: [u8; 8],
-    note: String,
+    text: String,
 }
 
-#[derive(Clone, Debug, PartialEq)]
-enum Happened {
-    Exchange { sent: Option<Octets>, got: Option<Octets> },
-    Set { service: Service, value: Octets },
-    Service { service: Service, value: Octets },
-    Power(bool),
-    Acyclic { request: String, answer: String },
-    Event { code: u16, qualifier: u8 },
-}
-
-impl Trace {
+impl Margin {
     /// Says what the tester does on purpose with the next exchange.
-    pub fn note(&mut self, note: String) {
-        self.note = note;
+    pub fn announce(&mut self, text: String) {
+        self.next = text;
     }
 
-    /// Number of rows so far, those left out included.
-    pub fn len(&self) -> usize {
-        self.head.len() + self.elided + self.tail.len()
-    }
-
-    /// Whether nothing has happened yet.
-    pub fn is_empty(&self) -> bool {
-        self.head.is_empty()
-    }
-
-    /// A stimulus that shows by itself: supply and application inputs.
-    pub fn stimulus(&mut self, at: u64, stimulus: &Stimulus) {
-        match stimulus {
-            Stimulus::Power(on) => self.push(at, Happened::Power(*on)),
-            Stimulus::Set { service, value, .. } => {
-                self.push(at, Happened::Set { service: *service, value: *value });
-            }
-            _ => {}
-        }
-    }
-
-    /// An exchange with the transitions the DUT took.
-    pub fn exchange(&mut self, at: u64, sent: Option<&[u8]>, got: Option<&[u8]>, via: impl Iterator<Item = T>) {
+    /// Notes the transitions the DUT took in the exchange at this time.
+    pub fn exchange(&mut self, at: u64, via: impl Iterator<Item = T>) {
         let mut taken = [0; 8];
         taken.iter_mut().zip(via).for_each(|(slot, t)| *slot = t.0);
-        let what = Happened::Exchange { sent: sent.and_then(Octets::new), got: got.and_then(Octets::new) };
-        let note = std::mem::take(&mut self.note);
-        let last = self.tail.back_mut().or(self.head.last_mut());
-        if let Some(last) = last
-            && last.what == what
-            && taken == [0; 8]
-            && note.is_empty()
-        {
-            last.count += 1;
+        let text = std::mem::take(&mut self.next);
+        if taken == [0; 8] && text.is_empty() {
             return;
         }
-        self.put(Row { at, count: 1, what, via: taken, note });
-    }
-
-    /// An application service reported by the DUT.
-    pub fn service(&mut self, at: u64, service: Service, value: &Octets) {
-        self.push(at, Happened::Service { service, value: *value });
-    }
-
-    /// The answer to a read or write.
-    pub fn reply(&mut self, at: u64, request: &Stimulus, reply: &Reply) {
-        let answer = match reply {
-            Reply::Value(data) => format!("= {}", hex(data)),
-            Reply::Written => "written".to_owned(),
-            Reply::Refused(error) => format!("refused 0x{error:04X}"),
-            Reply::Unsupported => "unsupported".to_owned(),
-        };
-        self.push(at, Happened::Acyclic { request: name(request), answer });
-    }
-
-    /// An Event.
-    pub fn event(&mut self, at: u64, code: u16, qualifier: u8) {
-        self.push(at, Happened::Event { code, qualifier });
-    }
-
-    fn push(&mut self, at: u64, what: Happened) {
-        self.put(Row { at, count: 1, what, via: [0; 8], note: String::new() });
-    }
-
-    fn put(&mut self, row: Row) {
-        if self.head.len() < HEAD {
-            return self.head.push(row);
+        let note = Note { at, via: taken, text };
+        if self.head.len() < NOTES {
+            return self.head.push(note);
         }
-        if self.tail.len() == TAIL {
-            self.tail.pop_front();
-            self.elided += 1;
+        if self.notes.len() == NOTES {
+            self.notes.pop_front();
         }
-        self.tail.push_back(row);
-    }
-
-    /// The entries for the record, how many were left out, and where a row has gone: the position of each row before
-    /// and after leaving out.
-    pub fn into_entries(self) -> (Vec<Entry>, u64, impl Fn(usize) -> usize) {
-        let (elided, head) = (self.elided, self.head.len());
-        let entries = self.head.into_iter().chain(self.tail).map(entry).collect();
-        (entries, elided as u64, move |row: usize| if row < head { row } else { row.saturating_sub(elided).max(head) })
+        self.notes.push_back(note);
     }
 }
 
-fn entry(row: Row) -> Entry {
-    let what = match row.what {
-        Happened::Exchange { sent, got } => What::Exchange {
-            port: 1,
-            sent: sent.map(|octets| hex(octets.as_slice())),
-            got: got.map(|octets| hex(octets.as_slice())),
+/// A recording as entries of the record.
+pub struct Told {
+    /// The entries, times counted from the beginning of the case.
+    pub entries: Vec<Entry>,
+    /// Entries left out of the middle.
+    pub elided: u64,
+    head: usize,
+}
+
+impl Told {
+    /// Tells a recording whose clock stood at `zero` when the case began.
+    pub fn new(recording: &Recording, margin: Margin, zero: u64) -> Told {
+        let mut entries: Vec<(u64, Entry)> =
+            recording.entries().map(|entry| (entry.at, told(entry, zero))).collect();
+        for note in margin.head.into_iter().chain(margin.notes) {
+            // Equal exchanges are one entry, at the time of the first.
+            let upto = entries.partition_point(|(at, _)| *at <= note.at);
+            let exchange = entries[..upto].iter_mut().rfind(|(_, entry)| matches!(entry.what, What::Exchange { .. }));
+            if let Some((_, entry)) = exchange {
+                entry.via.extend(note.via.iter().take_while(|number| **number != 0).map(|number| format!("T{number}")));
+                if entry.note.is_empty() {
+                    entry.note = note.text;
+                }
+            }
+        }
+        Told {
+            entries: entries.into_iter().map(|(_, entry)| entry).collect(),
+            elided: recording.elided as u64,
+            head: recording.head.len(),
+        }
+    }
+
+    /// Where an entry of the recording stands now; one that was left out stands where the gap is.
+    pub fn place(&self, entry: usize) -> usize {
+        if entry < self.head { entry } else { entry.saturating_sub(self.elided as usize).max(self.head) }
+    }
+
+    /// The last exchange at or before this time of the case.
+    pub fn exchange_at(&self, at: u64) -> Option<usize> {
+        let upto = self.entries.partition_point(|entry| entry.at <= at);
+        self.entries[..upto].iter().rposition(|entry| matches!(entry.what, What::Exchange { .. }))
+    }
+}
+
+fn told(entry: &fsct_adapters::Entry, zero: u64) -> Entry {
+    let octets = |octets: &Octets| hex(octets.as_slice());
+    let service = |service: &Service| service.name().to_owned();
+    let what = match &entry.what {
+        Happened::Exchange { port, sent, got } => {
+            What::Exchange { port: *port, sent: sent.as_ref().map(octets), got: got.as_ref().map(octets) }
+        }
+        Happened::Set { service: which, value, .. } => What::Set { service: service(which), value: octets(value) },
+        Happened::Service { service: which, value, .. } => {
+            What::Service { service: service(which), value: octets(value) }
+        }
+        Happened::Power(on) => What::Power { on: *on },
+        Happened::Acyclic { request, answer } => What::Acyclic {
+            request: name(request),
+            answer: match answer {
+                Answer::Value(data) => format!("= {}", hex(data)),
+                Answer::Written => "written".to_owned(),
+                Answer::Refused(error) => format!("refused 0x{error:04X}"),
+                Answer::Unsupported => "unsupported".to_owned(),
+            },
         },
-        Happened::Set { service, value } => {
-            What::Set { service: service.name().to_owned(), value: hex(value.as_slice()) }
+        Happened::Event { code, qualifier } => What::Event { code: *code, qualifier: *qualifier },
+        Happened::Configure(variant) => {
+            What::Acyclic { request: name(&Stimulus::Configure(*variant)), answer: "done".to_owned() }
         }
-        Happened::Service { service, value } => {
-            What::Service { service: service.name().to_owned(), value: hex(value.as_slice()) }
-        }
-        Happened::Power(on) => What::Power { on },
-        Happened::Acyclic { request, answer } => What::Acyclic { request, answer },
-        Happened::Event { code, qualifier } => What::Event { code, qualifier },
+        Happened::Unserved(stimulus) => What::Acyclic { request: name(stimulus), answer: "unsupported".to_owned() },
     };
-    let via = row.via.iter().take_while(|number| **number != 0).map(|number| format!("T{number}")).collect();
-    Entry { at: row.at, count: row.count, what, via, note: row.note }
+    Entry { at: entry.at.saturating_sub(zero), count: entry.count, what, via: Vec::new(), note: String::new() }
 }
 
 /// A stimulus in words.

@@ -99,7 +99,7 @@ pub fn unpack_description(payload: &[u8]) -> Result<Described, Malformed> {
             VENDOR => once(&mut vendor, "the vendor", text(value, "the vendor")?)?,
             PRODUCT => once(&mut product, "the product", text(value, "the product")?)?,
             VERSION => once(&mut its_version, "the product's version", text(value, "the product's version")?)?,
-            LIMITS => once(&mut limits, "the limits", self::limits(value)?)?,
+            LIMITS => once(&mut limits, "the part about limits", self::limits(value)?)?,
             _ => {}
         }
     }
@@ -181,6 +181,6 @@ fn limits(value: &[u8]) -> Result<Limits, Malformed> {
             payload: usize::from(u16::from_be_bytes([*high, *low])).clamp(MIN_PAYLOAD, MAX_PAYLOAD),
             requests: (*requests).max(1),
         }),
-        _ => Err(Malformed::Length { field: "the limits", found: value.len() }),
+        _ => Err(Malformed::Length { field: "the part about limits", found: value.len() }),
     }
 }

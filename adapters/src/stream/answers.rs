@@ -121,7 +121,10 @@ pub(super) fn check_description(description: &Description) -> Result<(), DutErro
         for (least, greatest) in [offer.pd_out, offer.pd_in] {
             if least > greatest || usize::from(greatest) > offer.mode.max_pd() {
                 let most = offer.mode.max_pd();
-                return broken(format!("it offers {least} to {greatest} octets with {}, which holds {most}", offer.mode));
+                return broken(format!(
+                    "it offers {least} to {greatest} octets with {}, which holds {most}",
+                    offer.mode
+                ));
             }
         }
     }

@@ -11,8 +11,10 @@ use std::net::{TcpListener, TcpStream};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-/// Long enough for an answer on a busy machine, short enough to wait for.
-pub const SHORT: Duration = Duration::from_millis(100);
+/// Short enough to wait for, where an answer never comes.
+pub const SHORT: Duration = Duration::from_millis(250);
+/// Long enough for any answer on a busy machine, where one comes.
+pub const PATIENT: Duration = Duration::from_secs(20);
 
 /// Presents what it received in the exchange before; an octet that is not 0 sets `setSD_DC` to its lowest bit.
 #[derive(Debug, Default)]
