@@ -31,6 +31,9 @@ pub const MAX_TEXT: usize = 255;
 /// Octets of payload every DUT takes, whatever it says of itself.
 pub const MIN_PAYLOAD: usize = 512;
 
+/// The most stimuli in one request: few enough for a DUT in real time to answer each within its time-out.
+pub const MAX_STIMULI: usize = 256;
+
 /// A payload that is no message of [`VERSION`].
 #[derive(Copy, Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Malformed {

@@ -20,8 +20,6 @@ use std::time::{Duration, Instant};
 /// How long a DUT may take for each frame it answers, unless the address says otherwise.
 pub const REPLY_TIMEOUT: Duration = Duration::from_secs(2);
 
-/// Stimuli in one frame: few enough for a DUT in real time to answer each frame within [`REPLY_TIMEOUT`].
-const FRAME_STIMULI: usize = 256;
 /// Requests unanswered at any time, however many the DUT would take.
 const MAX_REQUESTS: usize = 8;
 /// Octets read at once.
@@ -196,7 +194,7 @@ impl StreamDut {
 
     fn request(&mut self, rest: &[Stimulus], first: usize) -> Result<Pending, DutError> {
         let mut payload = std::mem::take(&mut self.payload);
-        let count = message::pack_apply(rest, self.limits.payload, FRAME_STIMULI, &mut payload);
+        let count = message::pack_apply(rest, self.limits.payload, message::MAX_STIMULI, &mut payload);
         let sequence = self.send(message::APPLY, &payload);
         self.payload = payload;
         match count {

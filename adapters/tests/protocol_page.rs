@@ -208,6 +208,7 @@ fn the_limits_are_those_of_the_code() {
         format!("At most {FLOOD_PER_STIMULUS} observations a stimulus plus {FLOOD_SLACK} a request"),
         format!("come within {} s of", REPLY_TIMEOUT.as_secs()),
         format!("frames with {MIN_PAYLOAD} octets of payload"),
+        format!("One APPLY holds up to {MAX_STIMULI} stimuli"),
         format!("UTF-8 of at most {MAX_TEXT} octets"),
         format!("describes version {VERSION} of the messages"),
     ] {

@@ -411,10 +411,7 @@ impl<'s, 'd> Engine<'s, 'd> {
         if !self.session.serves(Pco::Acyclic) {
             return Err(Stop::Unserved("on-request data".to_owned()));
         }
-        let verify = match &request {
-            Stimulus::Write { index: INDEX_VERIFY, .. } => true,
-            _ => false,
-        };
+        let verify = matches!(&request, Stimulus::Write { index: INDEX_VERIFY, .. });
         self.session.acyclic(request)?;
         if verify && self.session.reply == Some(Reply::Written) {
             self.session.oracle.parameterized(self.session.now);

@@ -262,15 +262,13 @@ impl<'d> Session<'d> {
                 self.margin.exchange(observation.at, self.oracle.via());
                 verdict?;
             }
-            Seen::Service { service, value, .. } => {
-                match service {
-                    Service::PdoutD => self.app.pdout_d = Some(*value),
-                    Service::SetsdDc => self.app.set_sd_dc = Some(value.is_set()),
-                    Service::ChfackreqDc => self.app.ch_f_ack_req_dc = Some(value.is_set()),
-                    Service::SclFault => self.app.scl_fault = Some(value.is_set()),
-                    _ => {}
-                }
-            }
+            Seen::Service { service, value, .. } => match service {
+                Service::PdoutD => self.app.pdout_d = Some(*value),
+                Service::SetsdDc => self.app.set_sd_dc = Some(value.is_set()),
+                Service::ChfackreqDc => self.app.ch_f_ack_req_dc = Some(value.is_set()),
+                Service::SclFault => self.app.scl_fault = Some(value.is_set()),
+                _ => {}
+            },
             Seen::Value(data) => self.reply = Some(Reply::Value(data.clone())),
             Seen::Written => self.reply = Some(Reply::Written),
             Seen::Refused { error } => self.reply = Some(Reply::Refused(*error)),

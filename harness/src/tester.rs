@@ -200,7 +200,7 @@ pub fn zero_signature(mode: ProtMode, reading: Reading, length: usize, trailer: 
         }
         if effect != 0 {
             basis.push((effect, bits));
-            basis.sort_by(|a, b| b.0.cmp(&a.0));
+            basis.sort_by_key(|(effect, _)| std::cmp::Reverse(*effect));
         }
     }
     let mut rest = constant;

@@ -62,8 +62,7 @@ pub struct Told {
 impl Told {
     /// Tells a recording whose clock stood at `zero` when the case began.
     pub fn new(recording: &Recording, margin: Margin, zero: u64) -> Told {
-        let mut entries: Vec<(u64, Entry)> =
-            recording.entries().map(|entry| (entry.at, told(entry, zero))).collect();
+        let mut entries: Vec<(u64, Entry)> = recording.entries().map(|entry| (entry.at, told(entry, zero))).collect();
         for note in margin.head.into_iter().chain(margin.notes) {
             // Equal exchanges are one entry, at the time of the first.
             let upto = entries.partition_point(|(at, _)| *at <= note.at);

@@ -1,6 +1,7 @@
 //! The journal: `run.jsonl`, one line at a time, flushed, so that nothing recorded is lost when a run ends early.
 
 use crate::record::{CaseRecord, Footer, Header, Line, SCHEMA};
+use serde::Serialize;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
 use std::path::Path;
@@ -9,6 +10,15 @@ use std::path::Path;
 pub const FILE: &str = "run.jsonl";
 /// The longest line that is read, in octets.
 const MAX_LINE: u64 = 64 << 20;
+
+/// A [`Line`] that is lent, not owned.
+#[derive(Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum Written<'r> {
+    Header(&'r Header),
+    Case(&'r CaseRecord),
+    Footer(&'r Footer),
+}
 
 /// A journal being written.
 #[derive(Debug)]
@@ -29,7 +39,7 @@ impl Journal {
     /// # Errors
     /// What the file system says.
     pub fn header(&mut self, header: &Header) -> io::Result<()> {
-        self.line(&Line::Header(header.clone()))
+        self.line(&Written::Header(header))
     }
 
     /// A case that has ended.
@@ -37,7 +47,7 @@ impl Journal {
     /// # Errors
     /// What the file system says.
     pub fn case(&mut self, case: &CaseRecord) -> io::Result<()> {
-        self.line(&Line::Case(Box::new(case.clone())))
+        self.line(&Written::Case(case))
     }
 
     /// The last line.
@@ -45,10 +55,10 @@ impl Journal {
     /// # Errors
     /// What the file system says.
     pub fn footer(&mut self, footer: &Footer) -> io::Result<()> {
-        self.line(&Line::Footer(footer.clone()))
+        self.line(&Written::Footer(footer))
     }
 
-    fn line(&mut self, line: &Line) -> io::Result<()> {
+    fn line(&mut self, line: &Written<'_>) -> io::Result<()> {
         serde_json::to_writer(&mut self.0, line)?;
         self.0.write_all(b"\n")?;
         self.0.flush()
@@ -125,7 +135,7 @@ pub fn read(folder: &Path) -> Result<Run, ReadError> {
                 if found.schema != SCHEMA {
                     return Err(ReadError::Schema { path: name, found: found.schema });
                 }
-                header = Some(found);
+                header = Some(*found);
             }
             (Ok(Line::Case(case)), true) if footer.is_none() => cases.push(*case),
             (Ok(Line::Footer(found)), true) if footer.is_none() => footer = Some(found),

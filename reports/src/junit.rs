@@ -7,6 +7,7 @@ use crate::decode::{in_spdu, out_spdu};
 use crate::journal::Run;
 use crate::record::{CaseRecord, Entry, Execution, Reason, VariantInfo, Verdict, What};
 use crate::summary::{execution_name, verdict_name};
+use crate::text::visible as clean;
 use quick_junit::{NonSuccessKind, Property, Report, TestCase, TestCaseStatus, TestSuite};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -40,7 +41,10 @@ pub fn render(run: &Run) -> Result<String, quick_junit::SerializeError> {
         suite.set_time(cases.iter().filter_map(|case| case.time).sum());
         suite.add_property(Property::new("seed", run.header.seed.to_string()));
         suite.add_property(Property::new("profile", clean(&run.header.profile)));
-        suite.add_property(Property::new("dut", clean(&format!("{} {}", run.header.dut.product, run.header.dut.version))));
+        suite.add_property(Property::new(
+            "dut",
+            clean(&format!("{} {}", run.header.dut.product, run.header.dut.version)),
+        ));
         suite.add_property(Property::new("url", clean(&run.header.dut.url)));
         suite.add_test_cases(cases);
         report.add_test_suite(suite);
@@ -109,7 +113,11 @@ fn story(case: &CaseRecord) -> String {
     for reason in &case.reasons {
         let step = case.steps.get(reason.step).map_or("", |step| step.text.as_str());
         let _ = writeln!(text, "\n{} [{}] at step {} ({step})", verdict_name(reason.verdict), reason.kind, reason.step);
-        let _ = writeln!(text, "  clause   {}\n  expected {}\n  observed {}", reason.clause, reason.expected, reason.observed);
+        let _ = writeln!(
+            text,
+            "  clause   {}\n  expected {}\n  observed {}",
+            reason.clause, reason.expected, reason.observed
+        );
     }
     for (id, what) in &case.tolerances {
         let _ = writeln!(text, "\ntolerance {id}: {what}");
@@ -144,13 +152,4 @@ fn entry_text(entry: &Entry, variant: &VariantInfo) -> String {
     let via = if entry.via.is_empty() { String::new() } else { format!("  {}", entry.via.join(" ")) };
     let note = if entry.note.is_empty() { String::new() } else { format!("  [{}]", entry.note) };
     format!("{what}{count}{via}{note}")
-}
-
-/// Characters that XML cannot carry, or that a reader could be misled by, as escapes.
-fn clean(text: &str) -> String {
-    let hostile = |c: char| {
-        c.is_control() && !matches!(c, '\n' | '\t')
-            || matches!(c, '\u{FFFE}' | '\u{FFFF}' | '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}')
-    };
-    text.chars().map(|c| if hostile(c) { c.escape_unicode().to_string() } else { c.to_string() }).collect()
 }

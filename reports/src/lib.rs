@@ -1,13 +1,17 @@
 //! The run record and everything rendered from it: a report is a function of a record on disk.
 
+mod chart;
 pub mod decode;
+mod html;
 mod journal;
 mod junit;
 pub mod record;
 mod summary;
+mod text;
 
 pub use journal::{FILE, Journal, ReadError, Run, read};
 pub use summary::{Summary, execution_name, verdict_name};
+pub use text::visible;
 
 use std::io;
 use std::path::Path;
@@ -41,6 +45,7 @@ pub fn render(folder: &Path) -> Result<Summary, RenderError> {
     let mut json = serde_json::to_string_pretty(&summary).unwrap_or_default();
     json.push('\n');
     replace(folder, "junit.xml", &junit::render(&run)?)?;
+    replace(folder, "report.html", &html::render(&run))?;
     replace(folder, "summary.json", &json)?;
     Ok(summary)
 }

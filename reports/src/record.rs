@@ -15,7 +15,7 @@ pub const SCHEMA: &str = "fsct-run/1";
 #[serde(rename_all = "kebab-case")]
 pub enum Line {
     /// First line.
-    Header(Header),
+    Header(Box<Header>),
     /// A case.
     Case(Box<CaseRecord>),
     /// Last line of a complete run.

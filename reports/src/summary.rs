@@ -33,8 +33,8 @@ pub struct Summary {
 impl Summary {
     /// Sums up a run.
     pub fn of(run: &Run) -> Summary {
-        let verdicts =
-            [Verdict::NotApplicable, Verdict::Pass, Verdict::Remark, Verdict::Inconclusive, Verdict::Fail].map(verdict_name);
+        let verdicts = [Verdict::NotApplicable, Verdict::Pass, Verdict::Remark, Verdict::Inconclusive, Verdict::Fail]
+            .map(verdict_name);
         let executions = [
             Execution::Ok,
             Execution::Timeout,

@@ -25,6 +25,10 @@ pub struct Axis {
 }
 
 impl Axis {
+    fn words(&self) -> Vec<String> {
+        self.values.iter().map(|placed| placed.0.clone()).collect()
+    }
+
     /// Whether it chooses edition, mode or sizes.
     pub fn is_variant(&self) -> bool {
         VARIANT.contains(&self.name.as_str())
@@ -46,7 +50,13 @@ impl Binding {
         self.values.iter().find(|(known, _)| known == name).map(|(_, value)| value.as_str())
     }
 
-    /// `[edition=iec2022,mode=crc16,pd=2]`.
+    fn with(&self, name: &str, value: String) -> Binding {
+        let mut point = self.clone();
+        point.values.push((name.to_owned(), value));
+        point
+    }
+
+    /// `[edition=iec2022,mode=crc16,pd=2]`; sizes that differ are `pd=OUT/IN`.
     pub fn key(&self) -> String {
         let pairs: Vec<String> = self.values.iter().map(|(name, value)| format!("{name}={value}")).collect();
         format!("[{}]", pairs.join(","))
@@ -110,83 +120,72 @@ pub fn axes(source: &Arc<Source>, node: &Node, problems: &mut Vec<Problem>) -> V
 /// # Errors
 /// A [`Problem`] when there are too many points.
 pub fn expand(source: &Arc<Source>, axes: &[Axis], offers: &[Offer]) -> Result<Expansion, Problem> {
-    let axis = |name: &str| axes.iter().find(|axis| axis.name == name);
-    let texts = |name: &str, default: &[&str]| -> Vec<String> {
-        match axis(name) {
-            Some(axis) => axis.values.iter().map(|placed| placed.0.clone()).collect(),
-            None => default.iter().map(|text| (*text).to_owned()).collect(),
-        }
-    };
     let mut expansion = Expansion::default();
-    let sized = axis("pd_out").is_some() || axis("pd_in").is_some();
-    for edition in texts("edition", &Edition::ALL.map(Edition::name)) {
-        for mode in texts("mode", &ProtMode::ALL.map(ProtMode::name)) {
+    let words = |name: &str, all: [&str; 2]| match axes.iter().find(|axis| axis.name == name) {
+        Some(axis) => axis.words(),
+        None => all.map(str::to_owned).to_vec(),
+    };
+    for edition in words("edition", Edition::ALL.map(Edition::name)) {
+        for mode in words("mode", ProtMode::ALL.map(ProtMode::name)) {
             let (Ok(edition), Ok(mode)) = (edition.parse::<Edition>(), mode.parse::<ProtMode>()) else { continue };
-            let base = vec![("edition".to_owned(), edition.to_string()), ("mode".to_owned(), mode.to_string())];
-            let Some(offer) = offers.iter().find(|offer| offer.edition == edition && offer.mode == mode) else {
-                let point = Binding { variant: Variant { edition, mode, pd_out: 0, pd_in: 0 }, values: base };
-                expansion.excluded.push((point, format!("the DUT does not offer {edition} with {mode}")));
-                continue;
-            };
-            let sizes: Vec<(u8, u8, Vec<(String, String)>)> = if sized {
-                let outs = sizes(&texts("pd_out", &["typical"]), offer.pd_out, mode);
-                let ins = sizes(&texts("pd_in", &["typical"]), offer.pd_in, mode);
-                outs.iter()
-                    .flat_map(|out| ins.iter().map(move |input| (*out, *input)))
-                    .map(|(o, i)| {
-                        (o, i, vec![("pd_out".to_owned(), o.to_string()), ("pd_in".to_owned(), i.to_string())])
-                    })
-                    .collect()
-            } else {
-                let words = texts("pd", &["typical"]);
-                let outs = sizes(&words, offer.pd_out, mode);
-                let ins = sizes(&words, offer.pd_in, mode);
-                // Products with sizes that differ take `max` and `typical` per direction.
-                let count = outs.len().max(ins.len());
-                (0..count)
-                    .filter_map(|index| {
-                        let out = *outs.get(index).or(outs.last())?;
-                        let input = *ins.get(index).or(ins.last())?;
-                        let text = if out == input { out.to_string() } else { format!("{out}/{input}") };
-                        Some((out, input, vec![("pd".to_owned(), text)]))
-                    })
-                    .collect()
-            };
-            for (pd_out, pd_in, named) in sizes {
-                let variant = Variant { edition, mode, pd_out, pd_in };
-                let mut values = base.clone();
-                values.extend(named);
-                if !offer.covers(variant) {
-                    let term = format!(
-                        "the DUT offers PDout {}..{} and PDin {}..{} octets with {edition} and {mode}",
-                        offer.pd_out.0, offer.pd_out.1, offer.pd_in.0, offer.pd_in.1
-                    );
+            let values = vec![("edition".to_owned(), edition.to_string()), ("mode".to_owned(), mode.to_string())];
+            match offers.iter().find(|offer| offer.edition == edition && offer.mode == mode) {
+                Some(offer) => sized(axes, offer, &values, &mut expansion),
+                None => {
+                    let variant = Variant { edition, mode, pd_out: 0, pd_in: 0 };
+                    let term = format!("the DUT does not offer {edition} with {mode}");
                     expansion.excluded.push((Binding { variant, values }, term));
-                    continue;
                 }
-                let mut points = vec![values];
-                for axis in axes.iter().filter(|axis| !axis.is_variant()) {
-                    let choices = choices(axis, variant);
-                    points = points
-                        .iter()
-                        .flat_map(|point| choices.iter().map(move |choice| with(point, &axis.name, choice)))
-                        .collect();
-                    if points.len() > MAX_POINTS {
-                        let message = format!("the sweep has more than {MAX_POINTS} points");
-                        return Err(Problem::new(source, axis.at.clone(), message));
-                    }
-                }
-                expansion.points.extend(points.into_iter().map(|values| Binding { variant, values }));
             }
+        }
+    }
+    for axis in axes.iter().filter(|axis| !axis.is_variant()) {
+        let points = std::mem::take(&mut expansion.points);
+        expansion.points = points
+            .iter()
+            .flat_map(|point| {
+                choices(axis, point.variant).into_iter().map(move |choice| point.with(&axis.name, choice))
+            })
+            .collect();
+        if expansion.points.len() > MAX_POINTS {
+            let message = format!("the sweep has more than {MAX_POINTS} points");
+            return Err(Problem::new(source, axis.at.clone(), message));
         }
     }
     Ok(expansion)
 }
 
-fn with(point: &[(String, String)], name: &str, value: &str) -> Vec<(String, String)> {
-    let mut point = point.to_vec();
-    point.push((name.to_owned(), value.to_owned()));
-    point
+/// The points of one offer: one for each pair of sizes in the sweep.
+fn sized(axes: &[Axis], offer: &Offer, values: &[(String, String)], expansion: &mut Expansion) {
+    let axis = |name: &str| axes.iter().find(|axis| axis.name == name).map(Axis::words);
+    let typical = || vec!["typical".to_owned()];
+    let Offer { edition, mode, .. } = *offer;
+    let pairs: Vec<(u8, u8)> = match (axis("pd_out"), axis("pd_in")) {
+        (None, None) => {
+            let words = axis("pd").unwrap_or_else(typical);
+            let (outs, ins) = (sizes(&words, offer.pd_out, mode), sizes(&words, offer.pd_in, mode));
+            // A product whose directions differ in size takes `max` and `typical` of each.
+            let at = |sizes: &[u8], index: usize| sizes.get(index).or(sizes.last()).copied();
+            (0..outs.len().max(ins.len())).filter_map(|index| Some((at(&outs, index)?, at(&ins, index)?))).collect()
+        }
+        (outs, ins) => {
+            let outs = sizes(&outs.unwrap_or_else(typical), offer.pd_out, mode);
+            let ins = sizes(&ins.unwrap_or_else(typical), offer.pd_in, mode);
+            outs.iter().flat_map(|out| ins.iter().map(move |input| (*out, *input))).collect()
+        }
+    };
+    for (pd_out, pd_in) in pairs {
+        let variant = Variant { edition, mode, pd_out, pd_in };
+        let size = if pd_out == pd_in { pd_out.to_string() } else { format!("{pd_out}/{pd_in}") };
+        let point = Binding { variant, values: values.to_vec() }.with("pd", size);
+        if offer.covers(variant) {
+            expansion.points.push(point);
+        } else {
+            let ((a, b), (c, d)) = (offer.pd_out, offer.pd_in);
+            let term = format!("the DUT offers PDout {a}..{b} and PDin {c}..{d} octets with {edition} and {mode}");
+            expansion.excluded.push((point, term));
+        }
+    }
 }
 
 fn sizes(words: &[String], (least, most): (u8, u8), mode: ProtMode) -> Vec<u8> {

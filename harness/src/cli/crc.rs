@@ -21,7 +21,7 @@ pub struct Args {
 /// Runs the command; the result is the exit code.
 pub fn run(args: &Args) -> u8 {
     let digits: String = args.octets.concat().chars().filter(|c| !c.is_whitespace()).collect();
-    let octets: Option<Vec<u8>> = (digits.is_ascii() && digits.len() % 2 == 0)
+    let octets: Option<Vec<u8>> = (digits.is_ascii() && digits.len().is_multiple_of(2))
         .then(|| (0..digits.len()).step_by(2).map(|at| u8::from_str_radix(&digits[at..at + 2], 16).ok()).collect())
         .flatten();
     let Some(octets) = octets else {

@@ -15,6 +15,7 @@ mod vectors;
 use crate::library::Library;
 use crate::problem::Problem;
 use clap::{Parser, Subcommand};
+use fsct_reports::visible;
 use std::io::{IsTerminal, Write as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -109,7 +110,7 @@ fn show(problems: &[Problem]) -> u8 {
 
 /// One sentence on stderr; the result is the exit code given.
 fn fail(code: u8, sentence: impl std::fmt::Display) -> u8 {
-    eprintln!("fsct: {}", printable(&sentence.to_string()));
+    eprintln!("fsct: {}", visible(&sentence.to_string()));
     code
 }
 
@@ -121,14 +122,4 @@ fn print(text: impl std::fmt::Display) {
 /// Whether to colour, with NO_COLOR honoured.
 fn colour(terminal: bool) -> bool {
     terminal && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
-}
-
-/// Text that may come from a DUT, made harmless for a terminal: control characters and marks that reorder text are shown as
-/// escapes.
-fn printable(text: &str) -> String {
-    let hostile = |c: char| {
-        c.is_control() && c != '\n'
-            || matches!(c, '\u{200B}'..='\u{200F}' | '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}' | '\u{FEFF}')
-    };
-    text.chars().map(|c| if hostile(c) { c.escape_unicode().to_string() } else { c.to_string() }).collect()
 }

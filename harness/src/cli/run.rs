@@ -1,6 +1,6 @@
 //! `fsct run`: judges a DUT and leaves the record and the reports.
 
-use super::{Cases, RIG, USAGE, bench, colour, fail, print, printable, show};
+use super::{Cases, RIG, USAGE, bench, colour, fail, print, show};
 use crate::campaign::{Run, dut_info};
 use crate::oracle::{Mask, Tolerances};
 use crate::plan::{Plan, Selection, plan, unreached};
@@ -9,7 +9,7 @@ use crate::profile::Profile;
 use crate::yaml;
 use fsct_protocol::Edition;
 use fsct_reports::record::{CaseRecord, Execution, Footer, Header, SCHEMA, Verdict};
-use fsct_reports::{Journal, Summary};
+use fsct_reports::{Journal, Summary, visible};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::collections::BTreeMap;
 use std::io::IsTerminal;
@@ -95,7 +95,7 @@ fn execute(args: &Args) -> Result<u8, u8> {
     let description = match &first {
         Ok(bench) => bench.description.clone(),
         Err(error) => {
-            eprintln!("fsct: {}", printable(&error.to_string()));
+            eprintln!("fsct: {}", visible(&error.to_string()));
             unreached(profile.role)
         }
     };
@@ -260,7 +260,7 @@ impl Told<'_> {
         if self.failures == TOLD {
             text += "\n  (further ones are in the reports)";
         }
-        self.bar.suspend(|| eprintln!("{}", printable(&text)));
+        self.bar.suspend(|| eprintln!("{}", visible(&text)));
     }
 }
 

@@ -1,0 +1,24 @@
+//! Text that may come from a DUT, made harmless: what cannot be seen, what XML cannot carry and what reorders text becomes
+//! an escape that can be read. Markup is escaped by the writers.
+
+/// The text with every hostile character as an escape such as `\u{1b}`; line ends and tabs stay.
+pub fn visible(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        if is_hostile(c) { out.extend(c.escape_unicode()) } else { out.push(c) }
+    }
+    out
+}
+
+const fn is_hostile(c: char) -> bool {
+    match c {
+        '\n' | '\t' => false,
+        // Controls, among them the escape that begins terminal sequences.
+        '\0'..='\u{1F}' | '\u{7F}'..='\u{9F}' => true,
+        // Invisible, or reordering what follows.
+        '\u{200B}'..='\u{200F}' | '\u{2028}'..='\u{202E}' | '\u{2060}'..='\u{206F}' | '\u{FEFF}' => true,
+        // No characters at all.
+        '\u{FFFE}' | '\u{FFFF}' => true,
+        _ => false,
+    }
+}
