@@ -2,6 +2,7 @@
 
 use crate::decode::{in_label, out_label};
 use crate::record::{CaseRecord, Entry, What};
+use crate::text::visible;
 use maud::{Markup, html};
 
 /// Rows shown at most; of a longer trace the middle is left out, and the chart says so.
@@ -40,7 +41,7 @@ pub fn chart(case: &CaseRecord) -> Markup {
         })
         .collect();
     let height = height + 16;
-    let title = format!("Sequence of {}", case.key);
+    let title = format!("Sequence of {}", visible(&case.key));
     html! {
         div.scroll {
             svg role="img" viewBox=(format!("0 0 {WIDTH} {height}")) {
@@ -116,7 +117,7 @@ fn exchange(entry: &Entry, sent: Option<&str>, got: Option<&str>, y: i32, case: 
             (head(MASTER, back, 1, false))
         }
         text x=(MASTER + 12) y=(back - 4) { (short(&answer, 60)) }
-        @if !entry.via.is_empty() { text.soft x=(DEVICE + 10) y=(there + 10) { (entry.via.join(" ")) } }
+        @if !entry.via.is_empty() { text.soft x=(DEVICE + 10) y=(there + 10) { (visible(&entry.via.join(" "))) } }
     }
 }
 
@@ -145,10 +146,11 @@ fn note(at: u64, what: &What, y: i32) -> Markup {
     }
 }
 
-/// At most so many characters, with a sign that some were left out.
+/// At most so many characters, with a sign that some were left out, none of them hostile.
 fn short(text: &str, most: usize) -> String {
+    let text = visible(text);
     if text.chars().count() <= most {
-        return text.to_owned();
+        return text;
     }
     text.chars().take(most - 1).chain(['…']).collect()
 }

@@ -33,7 +33,7 @@ pub fn render(run: &Run) -> String {
             body {
                 main {
                     h1 { "IO-Link Safety conformance: " (clean(&run.header.dut.product)) }
-                    p.soft { "Evidence for an assessment, never a certificate. Made by fsct " (run.header.fsct) " from run.jsonl." }
+                    p.soft { "Evidence for an assessment, never a certificate. Made by fsct " (clean(&run.header.fsct)) " from run.jsonl." }
                     (banner(&summary))
                     (incomplete(run, &summary))
                     (facts(run, &summary))
@@ -105,8 +105,8 @@ fn facts(run: &Run, summary: &Summary) -> Markup {
             dt { "Device under test" } dd { (clean(&dut.vendor)) " · " (clean(&dut.product)) " · " (clean(&dut.version)) " (in its own words)" }
             dt { "Address" } dd { code { (clean(&dut.url)) } }
             dt { "Role" } dd { (clean(&dut.role)) }
-            dt { "Served" } dd { (dut.pcos.join(", ")) }
-            dt { "Clock" } dd { (dut.clock) ", resolution " (dut.resolution_ns) " ns, uncertainty ± " (dut.uncertainty_ns) " ns" }
+            dt { "Served" } dd { (clean(&dut.pcos.join(", "))) }
+            dt { "Clock" } dd { (clean(&dut.clock)) ", resolution " (dut.resolution_ns) " ns, uncertainty ± " (dut.uncertainty_ns) " ns" }
             dt { "Offers" } dd { @for offer in &dut.offers { (clean(offer)) br; } }
             dt { "Profile" } dd { (clean(&run.header.profile)) }
             dt { "Seed" } dd { (summary.seed) }
@@ -120,7 +120,7 @@ fn coverage(summary: &Summary) -> Markup {
         h2 { "Transitions taken" }
         ul.cells {
             @for (name, count) in &summary.transitions {
-                li.none[*count == 0] { span.word { (name) } " " @if *count == 0 { "never" } @else { (count) } }
+                li.none[*count == 0] { span.word { (clean(name)) } " " @if *count == 0 { "never" } @else { (count) } }
             }
         }
     }
@@ -154,7 +154,7 @@ fn group(cases: &[&CaseRecord]) -> Markup {
                 section.case { (full(case)) }
             }
             @if cases.len() > IN_FULL {
-                p.soft { (cases.len() - IN_FULL) " more of " (id) " like these:" }
+                p.soft { (cases.len() - IN_FULL) " more of " (clean(id)) " like these:" }
                 p.keys { (keys(&cases[IN_FULL..])) }
             }
         }
@@ -164,11 +164,11 @@ fn group(cases: &[&CaseRecord]) -> Markup {
 fn full(case: &CaseRecord) -> Markup {
     let (said, class) = word(case);
     html! {
-        h3 { span class=(format!("word {class}")) { (said) } " " (case.id) ": " (clean(&case.title)) }
+        h3 { span class=(format!("word {class}")) { (said) } " " (clean(&case.id)) ": " (clean(&case.title)) }
         p.soft { code { (clean(&case.key)) } " · " (clean(&case.place)) " · " (execution_name(case.execution)) }
         p { "Judges " (requirements(case)) }
         @for reason in &case.reasons { (why(reason, case)) }
-        @for (id, text) in &case.tolerances { p.remark { span.word { (id) } " " (clean(text)) } }
+        @for (id, text) in &case.tolerances { p.remark { span.word { (clean(id)) } " " (clean(text)) } }
         (body(case))
         p { "Run it again:" }
         pre { (clean(&case.replay)) }
@@ -201,8 +201,8 @@ fn body(case: &CaseRecord) -> Markup {
                     @if !step.executed { " " span.soft { "(not reached)" } }
                     ul.checks {
                         @for check in &step.checks {
-                            @if check.met { li { "✓ " (check.key) " " (clean(&check.observed)) } }
-                            @else { li.fail { "✗ " (check.key) " " (clean(&check.observed)) ", not " (clean(&check.expected)) } }
+                            @if check.met { li { "✓ " (clean(&check.key)) " " (clean(&check.observed)) } }
+                            @else { li.fail { "✗ " (clean(&check.key)) " " (clean(&check.observed)) ", not " (clean(&check.expected)) } }
                         }
                     }
                 }
@@ -265,7 +265,7 @@ fn tolerances(run: &Run, summary: &Summary) -> Markup {
                 tr { th { "Id" } th { "What is let pass" } th.number { "Cases" } }
                 @for (id, text) in &run.header.tolerances {
                     tr {
-                        td { (id) } td { (clean(text)) }
+                        td { (clean(id)) } td { (clean(text)) }
                         td.number { @match summary.tolerances.get(id) { Some(count) => { span.word { (count) } }, None => "–" } }
                     }
                 }
