@@ -1,0 +1,156 @@
+//! The rows are those of the tables, and whatever comes in, the machines stay in them.
+
+use fsct_protocol::scl::device::{Readings, Received};
+use fsct_protocol::scl::master::Answer;
+use fsct_protocol::scl::{Device, Master, Row, Var, device, master};
+use fsct_protocol::spdu::{Control, Status};
+use proptest::prelude::*;
+use rstest::rstest;
+
+fn edges(rows: &[Row]) -> Vec<(u8, u8, u8)> {
+    rows.iter().map(|row| (row.id.0, row.source.0, row.target.0)).collect()
+}
+
+#[test]
+fn table_38_has_these_transitions() {
+    let expected = [
+        (1, 0, 1),
+        (2, 1, 2),
+        (3, 2, 3),
+        (4, 3, 4),
+        (5, 4, 5),
+        (6, 5, 3),
+        (7, 3, 6),
+        (8, 5, 6),
+        (9, 6, 7),
+        (10, 7, 8),
+        (11, 8, 4),
+        (12, 8, 6),
+        (13, 8, 6),
+        (14, 7, 6),
+    ];
+    assert_eq!(edges(&master::ROWS), expected);
+}
+
+#[test]
+fn table_40_has_these_transitions() {
+    let expected = [
+        (20, 20, 21),
+        (21, 21, 22),
+        (22, 22, 23),
+        (23, 23, 24),
+        (24, 24, 22),
+        (25, 22, 25),
+        (26, 25, 26),
+        (27, 26, 27),
+        (28, 27, 23),
+        (29, 27, 25),
+        (29, 27, 25),
+        (30, 26, 25),
+        (31, 24, 25),
+    ];
+    assert_eq!(edges(&device::ROWS), expected);
+}
+
+/// What can happen to an FS-Device.
+#[derive(Copy, Clone, Debug)]
+enum Event {
+    Spdu { mcount: u8, set_sd: bool, ch_f_ack_req: bool, intact: bool },
+    Timeout,
+    SdsetDs(bool),
+}
+
+fn event() -> impl Strategy<Value = Event> {
+    prop_oneof![
+        6 => (0u8..8, any::<bool>(), any::<bool>(), prop::bool::weighted(0.8))
+            .prop_map(|(mcount, set_sd, ch_f_ack_req, intact)| Event::Spdu { mcount, set_sd, ch_f_ack_req, intact }),
+        1 => Just(Event::Timeout),
+        1 => any::<bool>().prop_map(Event::SdsetDs),
+    ]
+}
+
+fn readings() -> impl Strategy<Value = Readings> {
+    (any::<bool>(), any::<bool>(), any::<bool>()).prop_map(|(last_valid, jump_ignored, sequential)| Readings {
+        last_valid,
+        jump_ignored,
+        sequential,
+    })
+}
+
+proptest! {
+    #[test]
+    fn an_fs_device_gives_out_process_data_only_when_it_may(readings in readings(), events in prop::collection::vec(event(), 1..80)) {
+        let mut scl = Device::new(readings);
+        scl.start();
+        for event in events {
+            match event {
+                Event::SdsetDs(value) => scl.set_sdset_ds(value),
+                Event::Timeout => {
+                    let path = scl.expire();
+                    if !path.is_empty() {
+                        prop_assert!(!scl.uses_pdout() && scl.status().d_timeout && scl.status().sd_set);
+                    }
+                }
+                Event::Spdu { mcount, set_sd, ch_f_ack_req, intact } => {
+                    let good = intact && scl.counter_check(mcount);
+                    let control = Control { mcount, set_sd, ch_f_ack_req };
+                    let path = scl.receive(Received { control, intact });
+                    if !path.is_empty() {
+                        prop_assert!(!scl.uses_pdout() || good && !set_sd, "{path:?}");
+                        prop_assert!(good || scl.status().d_comm_err && scl.status().sd_set);
+                        prop_assert!(scl.timer_restarted());
+                    }
+                }
+            }
+            prop_assert!(matches!(scl.state().0, 21 | 24 | 26));
+            prop_assert!(scl.get(Var::SdCycles) <= 3);
+            prop_assert!(!(scl.uses_pdout() && scl.get(Var::SdCycles) > 0));
+        }
+    }
+
+    #[test]
+    fn an_fs_master_never_restarts_by_itself(events in prop::collection::vec((0u8..8, any::<u8>(), any::<bool>(), prop::bool::weighted(0.1)), 1..80)) {
+        let mut scl = Master::new();
+        scl.start();
+        let mut faulted = false;
+        for (dcount_i, bits, intact, timeout) in events {
+            if timeout {
+                faulted |= !scl.expire().is_empty();
+            } else {
+                let status = Status { dcount_i, sd_set: bits & 1 == 1, d_comm_err: bits & 14 == 2, d_timeout: bits & 112 == 16 };
+                let path = scl.receive(Answer { status, intact });
+                faulted |= path.iter().any(|t| matches!(t.0, 7 | 12));
+            }
+            // ChFAck_C stays 0: after a fault SD both ways, for ever.
+            prop_assert!(!faulted || scl.control().set_sd && !scl.uses_pdout() && scl.get(Var::In) == 0);
+            prop_assert!(matches!(scl.state().0, 2 | 5 | 7));
+            prop_assert!(scl.control().mcount <= 7);
+        }
+    }
+}
+
+/// The answers of section 1 of the digest: SDset, DCommErr, DTimeout and PDout in use, answer by answer.
+#[rstest]
+#[case::start_up(&[], &[(0, true), (1, true), (2, true), (3, true)], &[(1, 0, 0, 0), (1, 0, 0, 0), (1, 0, 0, 0), (0, 0, 0, 1)])]
+#[case::comm_err(&[0, 1, 2, 3], &[(4, false), (5, true), (6, true), (7, true), (1, true), (2, true)], &[(1, 1, 0, 0), (1, 1, 0, 0), (1, 0, 0, 0), (1, 0, 0, 0), (0, 0, 0, 0), (0, 0, 0, 1)])]
+#[case::first_spdu_bad(&[], &[(0, false), (1, true), (2, true), (3, true), (4, true)], &[(1, 1, 1, 0), (1, 1, 0, 0), (1, 0, 0, 0), (1, 0, 0, 0), (0, 0, 0, 0)])]
+#[case::mcount_0_in_operation(&[0, 1, 2, 3], &[(0, true), (1, true)], &[(0, 0, 0, 1), (0, 0, 0, 1)])]
+fn answers_of_an_fs_device(#[case] before: &[u8], #[case] spdus: &[(u8, bool)], #[case] answers: &[(u8, u8, u8, u8)]) {
+    let mut scl = Device::new(Readings::default());
+    scl.start();
+    let send = |scl: &mut Device, mcount, intact| {
+        scl.receive(Received { control: Control { mcount, set_sd: false, ch_f_ack_req: false }, intact });
+    };
+    before.iter().for_each(|mcount| send(&mut scl, *mcount, true));
+    for ((mcount, intact), expected) in spdus.iter().zip(answers) {
+        send(&mut scl, *mcount, *intact);
+        let status = scl.status();
+        let found = (
+            u8::from(status.sd_set),
+            u8::from(status.d_comm_err),
+            u8::from(status.d_timeout),
+            u8::from(scl.uses_pdout()),
+        );
+        assert_eq!((status.dcount_i, found), (7 - mcount, *expected), "after MCount {mcount}");
+    }
+}
