@@ -1,14 +1,14 @@
-//! Exchanges per second: the bare reference FS-Device, and the same with session, trace and oracle around it; the
-//! whole device suite; a long run.
+//! Exchanges per second: the bare reference FS-Device, the same with session, recorder and oracle around it, and over
+//! TCP on loopback; the whole device suite; loading and checking all cases.
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use fsct_adapters::{Dut, Observation, Octets, Stimulus, Variant};
+use fsct_adapters::{Dut, Listener, Observation, Octets, Stimulus, Variant, connect, serve};
 use fsct_harness::campaign::{Bench, Run};
 use fsct_harness::library::Library;
 use fsct_harness::oracle::{DeviceOracle, Setup};
 use fsct_harness::plan::{Selection, plan};
-use fsct_harness::session::Session;
+use fsct_harness::session::{Session, Stop};
 use fsct_protocol::crc::Reading;
 use fsct_protocol::fsp::{Authenticity, Protocol, VerifyRecord};
 use fsct_protocol::spdu::{Control, OutSpdu, Pd, Port, succ};
@@ -45,7 +45,7 @@ fn spdus(mode: ProtMode) -> Vec<Octets> {
 }
 
 /// On-request data that start the SCL.
-fn start(dut: &mut FsDevice, mode: ProtMode) -> Vec<Stimulus> {
+fn start(dut: &mut dyn Dut, mode: ProtMode) -> Vec<Stimulus> {
     let mut observed = Vec::new();
     let stimuli =
         [Stimulus::Configure(variant(mode)), Stimulus::Power(true), Stimulus::Read { index: 0x4201, subindex: 4 }];
@@ -93,12 +93,10 @@ fn bare_reference_device(bencher: Bencher, mode: ProtMode) {
         });
 }
 
-#[divan::bench(args = MODES)]
-fn with_oracle_and_trace(bencher: Bencher, mode: ProtMode) {
-    let spdus = spdus(mode);
-    let library = Library::embedded().expect("it is sound");
+/// A setup in which everything is judged.
+fn setup(library: &Library, mode: ProtMode) -> Setup {
     let profile = &library.profiles["reference-device"];
-    let setup = Setup {
+    Setup {
         edition: Edition::Iec2022,
         mode,
         pd_out: mode.max_pd(),
@@ -113,28 +111,60 @@ fn with_oracle_and_trace(bencher: Bencher, mode: ProtMode) {
         scl_start_ns: 0,
         allowed: library.tolerances.in_force(),
         app: true,
-    };
+    }
+}
+
+/// Starts the SCL of a DUT and exchanges with oracle and recorder: SPDUs one by one, or the last one over and over in
+/// large batches.
+fn judged(dut: &mut dyn Dut, library: &Library, mode: ProtMode, spdus: &[Octets], batched: bool) -> usize {
     let interrupted = AtomicBool::new(false);
-    bencher.counter(ItemsCount::new(EXCHANGES)).bench(|| {
-        let mut dut = FsDevice::new(Options::default());
-        let description = dut.hello().expect("it answers");
-        let records = start(&mut dut, mode);
-        let mut session = Session::new(&mut dut, &description, profile, DeviceOracle::new(setup.clone()), &interrupted);
-        let went: Result<(), fsct_harness::session::Stop> = (|| {
-            session.power(false)?;
-            session.power(true)?;
-            for record in &records {
-                session.acyclic(record.clone())?;
-            }
-            session.oracle.parameterized(session.now);
-            for octets in &spdus {
+    let description = dut.hello().expect("it answers");
+    dut.apply(&[Stimulus::Power(false)], &mut Vec::new()).expect("it answers");
+    let records = start(dut, mode);
+    let profile = &library.profiles["reference-device"];
+    let oracle = DeviceOracle::new(setup(library, mode));
+    let mut session = Session::new(dut, &description, profile, oracle, &interrupted);
+    let went: Result<(), Stop> = (|| {
+        session.power(false)?;
+        session.power(true)?;
+        for record in records {
+            session.acyclic(record)?;
+        }
+        session.oracle.parameterized(session.now);
+        if batched {
+            session.exchange_until(spdus.len() as u64 * CYCLE_NS, spdus.first().copied())?;
+        } else {
+            for octets in spdus {
                 session.exchange(Some(*octets))?;
             }
-            Ok(())
-        })();
-        went.expect("the reference device conforms");
-        black_box(session.recorded())
+        }
+        Ok(())
+    })();
+    went.expect("the reference device conforms");
+    session.recorded()
+}
+
+#[divan::bench(args = MODES)]
+fn with_oracle_and_recorder(bencher: Bencher, mode: ProtMode) {
+    let (spdus, library) = (spdus(mode), Library::embedded().expect("it is sound"));
+    bencher.counter(ItemsCount::new(EXCHANGES)).bench(|| {
+        let mut dut = FsDevice::new(Options::default());
+        black_box(judged(&mut dut, &library, mode, &spdus, false))
     });
+}
+
+#[divan::bench(args = [false, true], sample_count = 10)]
+fn over_tcp_batched(bencher: Bencher, batched: bool) {
+    let mode = ProtMode::Crc32;
+    let (spdus, library) = (spdus(mode), Library::embedded().expect("it is sound"));
+    let address = "tcp://127.0.0.1:0".parse().expect("an address");
+    let listener = Listener::bind(&address).expect("loopback");
+    let address = listener.address().expect("it is bound");
+    std::thread::spawn(move || serve(&listener, &|| -> Box<dyn Dut> { Box::new(FsDevice::new(Options::default())) }));
+    let mut dut = connect(&address).expect("loopback");
+    bencher
+        .counter(ItemsCount::new(EXCHANGES))
+        .bench_local(|| black_box(judged(dut.as_mut(), &library, mode, &spdus, batched)));
 }
 
 #[divan::bench(sample_count = 10)]

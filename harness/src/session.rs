@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// Exchanges sent in one go where the answers do not decide what comes next.
-const BATCH: usize = 256;
+const BATCH: usize = 8_192;
 
 /// Why a case went no further.
 #[derive(Clone, Debug)]

@@ -192,8 +192,9 @@ impl Config {
         true
     }
 
-    /// Takes the other configuration in when both go on alike from here: they differ in how they got here and, where
-    /// errors found in repetitions (A29) may have restarted the timer at any of them, in when it may expire.
+    /// Takes the other configuration in when both go on alike from here: they differ in how they got here and in when their
+    /// timers may expire. Windows that overlap become one, and so do those of errors found in repetitions (A29), any of
+    /// which may have restarted the timer.
     pub fn absorb(&mut self, other: &Config) -> bool {
         let alike = self.device == other.device
             && self.decided == other.decided
@@ -209,7 +210,8 @@ impl Config {
             return true;
         }
         let (Some(own), Some(others)) = (&mut self.timer, other.timer) else { return false };
-        if !self.used.has(29) || self.used != other.used {
+        let overlap = own.earliest <= others.latest && others.earliest <= own.latest;
+        if self.used != other.used || !(overlap || self.used.has(29)) {
             return false;
         }
         own.earliest = own.earliest.min(others.earliest);
