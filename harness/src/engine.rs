@@ -116,7 +116,11 @@ impl<'s, 'd> Engine<'s, 'd> {
         match stop {
             Stop::Mismatch(found) => {
                 let kind = format!("oracle/{}", found.kind);
-                self.reason(found.verdict, &kind, &found.clause, &found.expected, &found.observed);
+                let clause = match self.step {
+                    0 => found.clause,
+                    _ => format!("{}; the case judges {}", found.clause, self.judging.clauses),
+                };
+                self.reason(found.verdict, &kind, &clause, &found.expected, &found.observed);
             }
             Stop::Unserved(what) => {
                 self.outcome.execution = Execution::DutError;
@@ -289,10 +293,12 @@ impl<'s, 'd> Engine<'s, 'd> {
 
     fn nanoseconds(&self, duration: Duration) -> i64 {
         let profile = self.session.profile;
-        let latency = profile.answer_latency as i64 * profile.master_cycle_time_ns as i64;
+        // Late enough for an expiry to show, and one exchange more to see that it does not.
+        let late =
+            profile.margin_ns() as i64 + (profile.answer_latency as i64 + 1) * profile.master_cycle_time_ns as i64;
         duration.watchdogs * profile.watchdog_ns() as i64
             + duration.cycles * profile.master_cycle_time_ns as i64
-            + duration.margins * (profile.margin_ns() as i64 + latency)
+            + duration.margins * late
             + duration.guards * (profile.timer_tick_us * 1_000 + self.session.description.clock.uncertainty_ns) as i64
             + duration.ms * 1_000_000
     }

@@ -68,11 +68,8 @@ impl Partner {
             let status = view.status();
             !status.sd_set && !status.d_comm_err && !status.d_timeout
         });
-        let live = session.app.pdout_d.is_none_or(|pdout| pdout.as_slice().len() == tester.pdout.octets().len())
-            && session
-                .app
-                .pdout_d
-                .is_none_or(|pdout| tester.pdout.is_safe() || pdout.as_slice().iter().any(|o| *o != 0));
+        let live = |pdout: Octets| tester.pdout.is_safe() || pdout.as_slice().iter().any(|octet| *octet != 0);
+        let live = session.app.pdout_d.is_none_or(live);
         self.master.state().0 == 5 && !self.master.control().set_sd && self.master.get(Var::In) == 1 && settled && live
     }
 

@@ -147,22 +147,17 @@ fn every_small_corruption_is_found(#[case] mode: ProtMode, #[case] pd: &[u8], #[
     }
 }
 
+/// The known blocks: authenticity, protocol, FSP_AuthentCRC, FSP_ProtParCRC.
 #[rstest]
-#[case::defaults(0, 0, 0, 2, 100, 0x9A28, 0, 0x0000, 0xFBB8)]
-#[case::test_mode(0x1122_3344, 0x5566_7788, 1, 2, 100, 0x9A28, 0, 0x6484, 0xFBB8)]
-#[case::armed(0x1122_3344, 0x5566_7788, 1, 2, 100, 0x9A28, 0x34FA_2C43, 0x6484, 0x86A8)]
-#[case::crc_16(0x1122_3344, 0, 2, 1, 100, 0x13FB, 0x3AF2, 0x2CC5, 0x43C1)]
-#[case::limits(0x1122_3344, 0x5566_7788, 1, 2, 0xFFFF, 0x9A28, 0xFFFF_FFFF, 0x6484, 0xB37A)]
-#[case::signatures_of_0(0xD3AF, 0, 1, 2, 100, 0x9A28, 0x086C, 0x0000, 0x0000)]
-#[allow(clippy::too_many_arguments, reason = "the columns of the table of known blocks")]
+#[case::defaults((0, 0, 0), (2, 100, 0x9A28, 0), 0x0000, 0xFBB8)]
+#[case::test_mode((0x1122_3344, 0x5566_7788, 1), (2, 100, 0x9A28, 0), 0x6484, 0xFBB8)]
+#[case::armed((0x1122_3344, 0x5566_7788, 1), (2, 100, 0x9A28, 0x34FA_2C43), 0x6484, 0x86A8)]
+#[case::crc_16((0x1122_3344, 0, 2), (1, 100, 0x13FB, 0x3AF2), 0x2CC5, 0x43C1)]
+#[case::limits((0x1122_3344, 0x5566_7788, 1), (2, 0xFFFF, 0x9A28, 0xFFFF_FFFF), 0x6484, 0xB37A)]
+#[case::signatures_of_0((0xD3AF, 0, 1), (2, 100, 0x9A28, 0x086C), 0x0000, 0x0000)]
 fn signatures_of_known_blocks(
-    #[case] authenticity_1: u32,
-    #[case] authenticity_2: u32,
-    #[case] port: u8,
-    #[case] mode: u8,
-    #[case] watchdog_ms: u16,
-    #[case] io_struct_crc: u16,
-    #[case] tech_par_crc: u32,
+    #[case] (authenticity_1, authenticity_2, port): (u32, u32, u8),
+    #[case] (mode, watchdog_ms, io_struct_crc, tech_par_crc): (u8, u16, u16, u32),
     #[case] authent: u16,
     #[case] prot_par: u16,
 ) {

@@ -212,7 +212,7 @@ pub struct Duration {
     pub watchdogs: i64,
     /// Multiples of MasterCycleTime.
     pub cycles: i64,
-    /// Multiples of the margin of A24: how late an expiry may show.
+    /// Multiples of the margin of A24: how late an expiry may show, and one exchange to see whether it did.
     pub margins: i64,
     /// Multiples of the guard band: tick of the product's timer plus uncertainty of a time stamp.
     pub guards: i64,
