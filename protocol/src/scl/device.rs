@@ -2,7 +2,7 @@
 //!
 //! Both editions print the same rows; the counter check of the first SPDU is the one difference, see [`Device::receive`].
 
-use super::{Action, Cond, Path, Row, State, T, Trigger, Var, Vars, step};
+use super::{Action, Cond, Path, Row, State, T, Trigger, Var, Vars};
 use crate::spdu::{Control, Status, inv3, succ};
 use Action::{Copy, Down, If, Restart, Set};
 use Cond::{All, Any, Is, Not, True};
@@ -292,13 +292,6 @@ impl Device {
     }
 
     fn run(&mut self, triggers: &[Trigger]) -> Path {
-        let mut path = Path::default();
-        self.vars.set(Var::TimerRestarted, 0);
-        for trigger in triggers {
-            let Some(row) = step(&ROWS, self.state, *trigger, &mut self.vars) else { break };
-            self.state = row.target;
-            path.push(row.id);
-        }
-        path
+        super::run(&ROWS, &mut self.state, &mut self.vars, triggers)
     }
 }

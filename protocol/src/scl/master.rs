@@ -1,6 +1,6 @@
 //! The SCL of the FS-Master: Table 38 as rows, states 1..8, transitions T1..T14 (11.5.2).
 
-use super::{Action, Cond, Path, Row, State, T, Trigger, Var, Vars, step};
+use super::{Action, Cond, Path, Row, State, T, Trigger, Var, Vars};
 use crate::spdu::{Control, Status, inv3};
 use Action::{If, Next, Restart, Set};
 use Cond::{All, Any, Is, True};
@@ -197,13 +197,6 @@ impl Master {
     }
 
     fn run(&mut self, triggers: &[Trigger]) -> Path {
-        let mut path = Path::default();
-        self.vars.set(Var::TimerRestarted, 0);
-        for trigger in triggers {
-            let Some(row) = step(&ROWS, self.state, *trigger, &mut self.vars) else { break };
-            self.state = row.target;
-            path.push(row.id);
-        }
-        path
+        super::run(&ROWS, &mut self.state, &mut self.vars, triggers)
     }
 }

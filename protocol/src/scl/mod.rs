@@ -219,6 +219,18 @@ fn carry_out(actions: &'static [Action], vars: &mut Vars) {
     }
 }
 
+/// Steps a machine through `triggers`, as far as there are transitions: from one waiting state to the next.
+fn run(rows: &'static [Row], state: &mut State, vars: &mut Vars, triggers: &[Trigger]) -> Path {
+    let mut path = Path::default();
+    vars.set(Var::TimerRestarted, 0);
+    for trigger in triggers {
+        let Some(row) = step(rows, *state, *trigger, vars) else { break };
+        *state = row.target;
+        path.push(row.id);
+    }
+    path
+}
+
 /// Transitions taken in one go, in order: at most four between two waiting states.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Path {
