@@ -159,6 +159,61 @@ fn a_case_of_ones_own_runs() {
 }
 
 #[test]
+fn a_case_of_ones_own_that_fails_can_be_run_again_by_its_line() {
+    let folder = Folder::new("own-replay");
+    let file = folder.file("mine.yaml", &MISSPELT.replace("corupt", "corrupt").replace("DCommErr: 1", "DCommErr: 0"));
+    let run = fsct(&["run", &file, "--edition", "v1.1", "--filter", "crc32", "--out", &folder.out()]);
+    assert_eq!(run.code, 1, "{run:?}");
+    let line = run.err.lines().find(|line| line.contains("replay")).expect("a line to replay it");
+    assert!(line.contains(&format!("fsct run '{file}' --dut")), "{line}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_run_stopped_by_the_user_leaves_a_valid_partial_record() {
+    let folder = Folder::new("stopped");
+    let endless = MISSPELT.replace("corupt: data", "times: 10000000");
+    let file = folder.file("mine.yaml", &endless);
+    let mut run = std::process::Command::new(assert_cmd::cargo::cargo_bin("fsct"))
+        .args(["run", &file, "--out", &folder.out()])
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .expect("it runs");
+    // The header is written when the signals are taken care of.
+    while !folder.0.join("run.jsonl").metadata().is_ok_and(|data| data.len() > 0) {
+        std::thread::yield_now();
+    }
+    let stop = std::process::Command::new("kill").args(["-INT", &run.id().to_string()]).status();
+    assert!(stop.expect("kill is there").success());
+    let status = run.wait().expect("it ends");
+    let mut said = String::new();
+    run.stdout.take().expect("it is piped").read_to_string(&mut said).expect("text");
+    assert_eq!(status.code(), Some(3));
+    assert!(said.contains("valid and partial"), "{said}");
+    let record = folder.text("run.jsonl");
+    let last: serde_json::Value = serde_json::from_str(record.lines().last().expect("lines")).expect("JSON");
+    assert_eq!(last["footer"]["interrupted"], true);
+    let report = fsct(&["report", &folder.out()]);
+    assert_eq!(report.code, 3, "{report:?}");
+}
+
+#[test]
+fn the_case_in_the_manual_is_sound_and_passes() {
+    let page = include_str!("../../docs/cases.md");
+    let (_, page) = page.split_once("## A file").expect("the section is there");
+    let block =
+        page.lines().skip_while(|line| line.is_empty()).take_while(|line| line.is_empty() || line.starts_with("    "));
+    let text: String = block.map(|line| format!("{}\n", line.strip_prefix("    ").unwrap_or_default())).collect();
+    let folder = Folder::new("manual");
+    let file = folder.file("manual.yaml", &text);
+    assert_eq!(fsct(&["check", &file]).code, 0);
+    let run = fsct(&["run", &file, "--out", &folder.out()]);
+    assert_eq!(run.code, 0, "{run:?}");
+    assert!(run.out.contains("pass"), "{}", run.out);
+}
+
+#[test]
 fn an_unknown_requirement_is_named() {
     let folder = Folder::new("requirement");
     let text = MISSPELT.replace("corupt", "corrupt").replace("R-11.5.3-09", "R-11.5.3-90");

@@ -72,7 +72,7 @@ fn execute(args: &Args) -> Result<u8, u8> {
     let mut selection =
         Selection { suites: Vec::new(), filter: args.filter.clone(), edition: args.edition, shard: args.shard };
     for suite in &args.suites {
-        if suite.ends_with(".yaml") || suite.ends_with(".yml") {
+        if is_file(suite) {
             let name = library.add_suite(Path::new(suite)).map_err(|problems| show(&problems))?;
             let problems = library.check();
             let own: Vec<_> = problems.into_iter().filter(|problem| problem.place().starts_with(suite)).collect();
@@ -154,6 +154,11 @@ fn execute(args: &Args) -> Result<u8, u8> {
     Ok(summary.exit_code())
 }
 
+/// Whether a word on the command line is a file of cases and not the name of a suite.
+fn is_file(suite: &str) -> bool {
+    suite.ends_with(".yaml") || suite.ends_with(".yml")
+}
+
 fn profile(name: &str, known: &BTreeMap<String, Profile>) -> Result<Profile, u8> {
     if let Some(profile) = known.get(name) {
         return Ok(profile.clone());
@@ -193,7 +198,11 @@ fn in_force(allowed: Mask, table: &Tolerances) -> BTreeMap<String, String> {
 
 /// The command line that leads back to a case.
 fn command(args: &Args) -> String {
-    let mut command = format!("fsct run --dut '{}'", args.dut);
+    let mut command = "fsct run".to_owned();
+    for file in args.suites.iter().filter(|suite| is_file(suite)) {
+        command += &format!(" '{file}'");
+    }
+    command += &format!(" --dut '{}'", args.dut);
     if args.profile != "reference-device" {
         command += &format!(" --profile '{}'", args.profile);
     }
