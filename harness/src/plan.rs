@@ -3,7 +3,7 @@
 use crate::case::{Binding, Case};
 use crate::library::{Library, needs};
 use crate::problem::Problem;
-use crate::profile::Profile;
+use crate::profile::{Parameterization, Profile};
 use fsct_adapters::{Description, Pco, Role};
 use fsct_protocol::Edition;
 
@@ -125,7 +125,13 @@ fn excluded(library: &Library, profile: &Profile, description: &Description, pla
     {
         return Some(format!("the profile does not list the feature `{feature}`"));
     }
-    // Start conditions do without what is not served; the steps of a case cannot.
+    if let Some(pco) = [Pco::Power, Pco::Link].into_iter().find(|pco| !description.pcos.contains(pco)) {
+        return Some(format!("the DUT does not serve `{}`, so no start condition can be reached", pco.name()));
+    }
+    if profile.parameterization == Parameterization::None && case.needs.contains(&Pco::Acyclic) {
+        return Some("the profile says that the product starts its SCL by itself".to_owned());
+    }
+    // Start conditions do without on-request data and application; the steps of a case cannot.
     let steps = case.steps(binding, &mut Vec::new());
     let missing = case.needs.iter().copied().chain(needs(&steps)).find(|pco| !description.pcos.contains(pco));
     missing.map(|pco| format!("the DUT does not serve `{}`", pco.name()))

@@ -38,6 +38,8 @@ struct Way {
     jumps_accepted: bool,
     /// Start value as a leading octet (A02).
     leading_octet: bool,
+    /// Serves supply, link and clock alone, and starts its SCL by itself.
+    link_only: bool,
 }
 
 struct TableDevice {
@@ -70,6 +72,12 @@ impl TableDevice {
             received: Pd::safe(2),
             answer: None,
         }
+    }
+
+    fn start(&mut self) {
+        let mut scl = Device::new(self.way.readings);
+        scl.start();
+        self.scl = Some(scl);
     }
 
     fn reading(&self) -> Reading {
@@ -162,7 +170,10 @@ impl Dut for TableDevice {
         Ok(Description {
             role: Role::Device,
             ports: 1,
-            pcos: vec![Pco::Power, Pco::Link, Pco::Acyclic, Pco::App, Pco::Clock],
+            pcos: match self.way.link_only {
+                true => vec![Pco::Power, Pco::Link, Pco::Clock],
+                false => vec![Pco::Power, Pco::Link, Pco::Acyclic, Pco::App, Pco::Clock],
+            },
             offers: EVERYTHING.to_vec(),
             clock: Clock { kind: ClockKind::Virtual, resolution_ns: 1, uncertainty_ns: 0 },
             vendor: "test".into(),
@@ -183,6 +194,12 @@ impl Dut for TableDevice {
                     *self = TableDevice { variant: self.variant, now: self.now, on: *on, ..TableDevice::new(self.way) };
                     self.pdin = Octets::zero(self.variant.pd_in.into());
                     self.received = Pd::safe(self.variant.pd_out.into());
+                    if *on && self.way.link_only {
+                        self.start();
+                    }
+                }
+                Stimulus::Set { .. } | Stimulus::Read { .. } | Stimulus::Write { .. } if self.way.link_only => {
+                    seen.push(Seen::Unsupported);
                 }
                 Stimulus::Advance { ns } => {
                     self.now += ns;
@@ -197,9 +214,7 @@ impl Dut for TableDevice {
                 Stimulus::Read { .. } => seen.push(Seen::Value(vec![0, 0])),
                 Stimulus::Write { index, .. } => {
                     if *index == 0x4202 {
-                        let mut scl = Device::new(self.way.readings);
-                        scl.start();
-                        self.scl = Some(scl);
+                        self.start();
                     }
                     seen.push(Seen::Written);
                 }
@@ -210,7 +225,7 @@ impl Dut for TableDevice {
                 }
                 _ => seen.push(Seen::Unsupported),
             }
-            if self.on {
+            if self.on && !self.way.link_only {
                 let service = |(service, value)| Seen::Service { port: 1, service, value };
                 seen.extend(self.services().into_iter().map(service));
             }
@@ -273,4 +288,14 @@ fn the_other_reading_of_the_start_value_is_inconclusive_and_named() {
     let wrong: Vec<CaseRecord> = cases.iter().filter(|case| case.verdict != Verdict::Inconclusive).cloned().collect();
     assert!(wrong.is_empty(), "{}", story(&wrong[..wrong.len().min(20)]));
     assert!(cases.iter().any(|case| case.reasons.iter().any(|reason| reason.kind == "oracle/signature/A02")));
+}
+
+#[test]
+fn a_device_that_serves_the_link_alone_is_judged_by_what_can_be_seen() {
+    let cases = judged(Way { link_only: true, ..Way::default() });
+    let others: Vec<CaseRecord> = cases.iter().filter(|case| case.verdict != Verdict::Pass).cloned().collect();
+    assert!(others.is_empty(), "{}", story(&others[..others.len().min(20)]));
+    assert!(cases.len() > 900 && !cases.iter().any(|case| case.id == "FSD-0123"), "cases with SDset_DS do not apply");
+    let wrong = judged(Way { link_only: true, jumps_accepted: true, ..Way::default() });
+    assert!(wrong.iter().any(|case| case.verdict == Verdict::Fail));
 }
