@@ -64,6 +64,11 @@ pub struct Session<'d> {
     pub margin: Margin,
     /// The clock of the DUT when the case began, once it is known.
     zero: Option<u64>,
+    /// On a real clock: an exchange reached the DUT more than half a MasterCycleTime later than planned, so what a case
+    /// expects of its timing cannot be held against the DUT.
+    pub slipped: bool,
+    /// On a real clock: when the latest exchange was, and how long after it the next one is meant to be.
+    planned: Option<(u64, u64)>,
     /// Time of the latest exchange, counted from the beginning of the case.
     pub last_exchange: u64,
     interrupted: &'d AtomicBool,
@@ -102,6 +107,8 @@ impl<'d> Session<'d> {
             oracle,
             margin: Margin::default(),
             zero: None,
+            slipped: false,
+            planned: None,
             last_exchange: 0,
             interrupted,
             now: 0,
@@ -168,7 +175,10 @@ impl<'d> Session<'d> {
     pub fn exchange_after(&mut self, ns: u64, octets: Option<Octets>) -> Result<(), Stop> {
         let exchange = Stimulus::Exchange { port: 1, octets };
         match self.wait_for_turn(ns) {
-            true => self.apply(&[exchange]),
+            true => {
+                self.planned = self.planned.map(|(last, _)| (last, ns));
+                self.apply(&[exchange])
+            }
             false => self.apply(&[Stimulus::Advance { ns }, exchange]),
         }
     }
@@ -259,6 +269,11 @@ impl<'d> Session<'d> {
                 let image = octets.as_ref().map(Octets::as_slice);
                 let verdict = self.oracle.exchange(at, sent, image, &self.app);
                 self.last_exchange = observation.at.saturating_sub(zero);
+                if self.pace.is_some() {
+                    let slack = self.profile.master_cycle_time_ns / 2;
+                    self.slipped |= self.planned.is_some_and(|(last, ns)| at > last + ns + slack);
+                    self.planned = Some((at, 0));
+                }
                 self.margin.exchange(observation.at, self.oracle.via());
                 verdict?;
             }
