@@ -16,8 +16,10 @@ use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// After this many cases in a row that lost the DUT, the rest is not tried.
-const GIVE_UP: usize = 3;
+/// After this many cases in a row before which the DUT was not reached or did not greet, the rest is not tried.
+const UNREACHED: usize = 3;
+/// After this many cases in a row in which the DUT was lost, the rest is not tried.
+const LOST: usize = 25;
 /// A kind of stimulus nobody knows.
 const MADE_UP: u8 = 0xEE;
 
@@ -102,35 +104,36 @@ impl Run<'_> {
         mut connect: impl FnMut() -> Result<Bench, DutError>,
         mut record: impl FnMut(CaseRecord) -> Result<(), E>,
     ) -> Result<(), E> {
-        let mut bench = Some(first);
-        let mut lost = 0;
+        let mut first = Some(first);
+        let mut bench = None;
+        let (mut unreached, mut lost) = (0, 0);
         for planned in &plan.cases {
             if self.interrupted.load(Ordering::Relaxed) {
                 break;
             }
-            if lost >= GIVE_UP {
-                let why = format!("not tried: the DUT was lost in {GIVE_UP} cases in a row");
+            if unreached >= UNREACHED || lost >= LOST {
+                let why = format!("not tried: the DUT was lost in {} cases in a row", unreached.max(lost));
                 record(self.not_run(planned, Execution::Aborted, "dut/given-up", &why))?;
                 continue;
             }
-            let mut ready = match bench.take() {
-                Some(Ok(bench)) => Ok(bench),
-                Some(Err(error)) if lost == 0 => Err(error),
-                _ => connect(),
+            let ready = match bench.take() {
+                Some(bench) => Ok(bench),
+                None => first.take().unwrap_or_else(&mut connect),
             };
-            let configured = ready
-                .as_mut()
-                .map_err(|error| error.clone())
-                .and_then(|bench| bench.configure(planned.binding.variant));
-            match (configured, ready) {
-                (Ok(()), Ok(mut ready)) => {
+            let ready = ready.and_then(|mut bench: Bench| {
+                bench.configure(planned.binding.variant)?;
+                Ok(bench)
+            });
+            match ready {
+                Ok(mut ready) => {
+                    unreached = 0;
                     let (case, is_lost) = self.case(planned, &mut ready);
                     lost = if is_lost { lost + 1 } else { 0 };
-                    bench = (!is_lost).then_some(Ok(ready));
+                    bench = (!is_lost).then_some(ready);
                     record(case)?;
                 }
-                (Err(error), _) | (_, Err(error)) => {
-                    lost += 1;
+                Err(error) => {
+                    unreached += 1;
                     let (execution, kind) = execution(&error);
                     record(self.not_run(planned, execution, kind, &error.to_string()))?;
                 }

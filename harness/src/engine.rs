@@ -4,7 +4,7 @@ use crate::case::model::*;
 use crate::expect::{self, Before};
 use crate::oracle::Mask;
 use crate::partner::Partner;
-use crate::profile::Parameterization;
+use crate::profile::{Parameterization, Profile};
 use crate::session::{Reply, Session, Stop};
 use crate::tester::Tester;
 use fsct_adapters::{DutError, Fault, Octets, Pco, Service, Stimulus};
@@ -260,7 +260,7 @@ impl<'s, 'd> Engine<'s, 'd> {
             .all(|check| check.met)
     }
 
-    /// One SCL cycle: the SPDU goes out in every exchange until the answer mirrors it or the latency is over.
+    /// One SCL cycle: the SPDU goes out in every exchange until it is answered.
     fn scl_cycle(&mut self, exchange: &Exchange) -> Result<(), Stop> {
         let echo = self.session.image;
         let (octets, note) = self.tester.build(exchange, echo);
@@ -275,10 +275,19 @@ impl<'s, 'd> Engine<'s, 'd> {
             }
             return Ok(());
         }
-        for _ in 0..=self.session.profile.answer_latency {
+        // The black channel repeats the SPDU until the answer mirrors it: for as long as the latency of the profile, and
+        // while the SCL may still be starting (11.5.4.3).
+        for sent in 0.. {
+            if self.session.oracle.may_be_starting() {
+                // Only the copy that the started SCL takes is the first one; its answer may still be on its way.
+                let Profile { answer_latency, master_cycle_time_ns, .. } = self.session.profile;
+                let taken = self.session.now + master_cycle_time_ns;
+                self.tester.first_copy = taken.saturating_sub(answer_latency * master_cycle_time_ns);
+            }
             self.session.exchange(octets)?;
             let answered = self.session.answer().map(|view| view.status().dcount_i);
-            if exchange.image == Image::Spdu && answered.is_some() && answered == self.tester.mirror() {
+            let mirrored = exchange.image == Image::Spdu && answered.is_some() && answered == self.tester.mirror();
+            if mirrored || sent >= self.session.profile.answer_latency && !self.session.oracle.may_be_starting() {
                 break;
             }
         }

@@ -491,6 +491,11 @@ impl DeviceOracle {
         self.best().into_iter().flat_map(|config| config.via.iter().flat_map(|path| path.iter()))
     }
 
+    /// Whether the SCL of the DUT may still be on its way from state 20 to 21.
+    pub fn may_be_starting(&self) -> bool {
+        self.configs.iter().any(|config| config.device.state() == State(20))
+    }
+
     /// The state the DUT is in as far as it can be told; `None` without supply or before FSP parameterization.
     pub fn state(&self) -> Option<State> {
         self.best().map(|config| config.device.state())

@@ -17,6 +17,7 @@ pub fn library() -> Library {
 }
 
 /// Every case of a selection on fresh DUTs from `make`.
+#[allow(dead_code, reason = "not every test needs the default profile")]
 pub fn run(library: &Library, selection: &Selection, make: impl Fn() -> Box<dyn Dut>) -> Vec<CaseRecord> {
     run_with(library, selection, "reference-device", make)
 }
