@@ -65,6 +65,31 @@ fn each_mutant_fails_and_the_clause_is_named(#[case] mutant: Mutant, #[case] cla
     assert!(failed.iter().filter(named).count() > 0, "{}: {}", mutant.name(), story(&failed[..failed.len().min(20)]));
 }
 
+#[test]
+fn a_failure_tells_what_the_matter_is() {
+    let library = library();
+    let told: Vec<String> = Mutant::ALL
+        .into_iter()
+        .map(|mutant| {
+            let make = || reference(Options { mutant: Some(mutant), ..Options::default() });
+            let cases = run(&library, &Selection::default(), make);
+            let failed = cases.iter().find(|case| case.verdict == Verdict::Fail).expect("it fails");
+            let reason = failed.reasons.first().expect("with a reason");
+            format!(
+                "{}\n  {} step {} [{}]\n  clause {}\n  expected {}\n  observed {}",
+                mutant.name(),
+                failed.key,
+                reason.step,
+                reason.kind,
+                reason.clause,
+                reason.expected,
+                reason.observed
+            )
+        })
+        .collect();
+    insta::assert_snapshot!(told.join("\n"));
+}
+
 #[rstest]
 #[case::null(|| Box::<NullDevice>::default() as Box<dyn Dut>)]
 #[case::echo(|| Box::<EchoDevice>::default() as Box<dyn Dut>)]
