@@ -8,7 +8,7 @@ use crate::profile::{Parameterization, Profile};
 use crate::session::{Reply, Session, Stop};
 use crate::tester::Tester;
 use fsct_adapters::{DutError, Fault, Octets, Pco, Service, Stimulus};
-use fsct_protocol::fsp::{Authenticity, INDEX_AUTHENTICITY, INDEX_PROTOCOL, INDEX_VERIFY, Protocol, VerifyRecord};
+use fsct_protocol::fsp::{INDEX_PROTOCOL, INDEX_VERIFY};
 use fsct_reports::record::{Execution, Reason, StepRecord, Verdict};
 
 /// The bound of the liveness requirement (R-11.5.3-22): 8 SCL cycles plus 2 FSP_Watchdog.
@@ -446,24 +446,7 @@ impl<'s, 'd> Engine<'s, 'd> {
             return Ok(());
         }
         let io_struct_crc = self.io_struct_crc()?;
-        let authenticity = Authenticity {
-            authenticity_1: profile.authenticity_1,
-            authenticity_2: profile.authenticity_2,
-            port: profile.port.number(),
-        };
-        let protocol = Protocol {
-            version: 1,
-            mode: self.session.oracle.setup().mode.code(),
-            watchdog_ms: profile.watchdog_ms,
-            io_struct_crc,
-            tech_par_crc: profile.tech_par_crc,
-        };
-        let mut records = Vec::new();
-        if profile.parameterization == Parameterization::Commissioning {
-            records.push((INDEX_AUTHENTICITY, authenticity.to_octets().to_vec()));
-            records.push((INDEX_PROTOCOL, protocol.to_octets().to_vec()));
-        }
-        records.push((INDEX_VERIFY, VerifyRecord { authenticity, protocol }.to_octets().to_vec()));
+        let records = profile.records(self.session.oracle.setup().mode, io_struct_crc);
         for (index, data) in records {
             self.acyclic(Stimulus::Write { index, subindex: 0, data })?;
             if self.session.reply != Some(Reply::Written) {

@@ -5,7 +5,9 @@ use crate::problem::{Problem, Source};
 use crate::tree::Fields;
 use crate::yaml;
 use fsct_adapters::{Description, Role};
+use fsct_protocol::ProtMode;
 use fsct_protocol::crc::Reading;
+use fsct_protocol::fsp::{Authenticity, INDEX_AUTHENTICITY, INDEX_PROTOCOL, INDEX_VERIFY, Protocol, VerifyRecord};
 use fsct_protocol::spdu::Port;
 use std::sync::Arc;
 
@@ -146,6 +148,32 @@ impl Profile {
     /// Margin of A24 in nanoseconds.
     pub fn margin_ns(&self) -> u64 {
         self.watchdog_margin * self.master_cycle_time_ns
+    }
+
+    /// The FSP records that start a product in this mode, in the order they are written; FSP_IO_StructCRC is the maker's.
+    pub fn records(&self, mode: ProtMode, io_struct_crc: u16) -> Vec<(u16, Vec<u8>)> {
+        let authenticity = Authenticity {
+            authenticity_1: self.authenticity_1,
+            authenticity_2: self.authenticity_2,
+            port: self.port.number(),
+        };
+        let protocol = Protocol {
+            version: 1,
+            mode: mode.code(),
+            watchdog_ms: self.watchdog_ms,
+            io_struct_crc,
+            tech_par_crc: self.tech_par_crc,
+        };
+        let verify = (INDEX_VERIFY, VerifyRecord { authenticity, protocol }.to_octets().to_vec());
+        match self.parameterization {
+            Parameterization::Commissioning => vec![
+                (INDEX_AUTHENTICITY, authenticity.to_octets().to_vec()),
+                (INDEX_PROTOCOL, protocol.to_octets().to_vec()),
+                verify,
+            ],
+            Parameterization::VerifyRecord => vec![verify],
+            Parameterization::None => Vec::new(),
+        }
     }
 
     /// What contradicts what the DUT says of itself; empty when they agree.

@@ -1,7 +1,7 @@
 //! What the oracle says when no configuration explains an exchange: field by field against the one that came closest.
 
 use super::config::{Config, Snapshot};
-use super::device::{App, Setup};
+use super::setup::{App, Setup};
 use fsct_protocol::ProtMode;
 use fsct_protocol::crc::{Reading, crc16, crc32};
 use fsct_protocol::scl::T;

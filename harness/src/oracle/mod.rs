@@ -7,8 +7,10 @@
 mod config;
 mod device;
 mod explain;
+mod setup;
 mod tolerance;
 
-pub use device::{App, DeviceOracle, Setup};
+pub use device::DeviceOracle;
 pub use explain::Mismatch;
+pub use setup::{App, Setup};
 pub use tolerance::{Mask, Stance, Tolerance, Tolerances};
