@@ -1,35 +1,43 @@
 //! The SPDUs of a case as a sequence chart in SVG: as the standard draws them, FS-Master left, FS-Device right.
 
-use crate::decode::{in_label, out_label};
+use crate::decode::Side;
 use crate::record::{CaseRecord, Entry, What};
-use crate::text::visible;
+use crate::story::{milliseconds, note, shown};
+use crate::text::{short, visible};
 use maud::{Markup, html};
 
-/// Rows shown at most; of a longer trace the middle is left out, and the chart says so.
+/// Rows shown at most; of a longer trace some in the middle are left out, and the chart says so.
 const MOST: usize = 60;
+/// Of these, rows at the beginning; the others end soon after the finding.
+const HEAD: usize = 16;
+/// Rows after the finding.
+const AFTER: usize = 6;
 const WIDTH: i32 = 900;
 const MASTER: i32 = 190;
 const DEVICE: i32 = 640;
+const MIDDLE: i32 = (MASTER + DEVICE) / 2;
+const LABEL: i32 = MASTER + 12;
 const TOP: i32 = 44;
 
 /// One line of the chart.
 enum Row<'c> {
     Step(String),
-    Entry(&'c Entry),
+    /// An entry, and whether it shows the finding.
+    Entry(&'c Entry, bool),
     Gap(u64),
 }
 
 impl Row<'_> {
     const fn height(&self) -> i32 {
         match self {
-            Row::Entry(Entry { what: What::Exchange { .. }, .. }) => 46,
+            Row::Entry(Entry { what: What::Exchange { .. }, .. }, _) => 46,
             _ => 24,
         }
     }
 }
 
 /// The chart of a case.
-pub fn chart(case: &CaseRecord) -> Markup {
+pub fn chart(case: &CaseRecord, side: Side) -> Markup {
     let rows = rows(case);
     let mut height = TOP;
     let placed: Vec<(i32, &Row<'_>)> = rows
@@ -42,16 +50,23 @@ pub fn chart(case: &CaseRecord) -> Markup {
         .collect();
     let height = height + 16;
     let title = format!("Sequence of {}", visible(&case.key));
+    let (master, device) = match side {
+        Side::Device => ("FS-Master (tester)", "FS-Device (DUT)"),
+        Side::Master => ("FS-Master (DUT)", "FS-Device (tester)"),
+    };
     html! {
-        div.scroll {
+        div.scroll tabindex="0" role="group" aria-label="Sequence chart" {
             svg role="img" viewBox=(format!("0 0 {WIDTH} {height}")) {
                 title { (title) }
-                desc { "Exchanges between the FS-Master, played by the tester, and the FS-Device under test, in order of time." }
-                text x=(MASTER) y="16" text-anchor="middle" { "FS-Master (tester)" }
-                text x=(DEVICE) y="16" text-anchor="middle" { "FS-Device (DUT)" }
+                desc {
+                    "Exchanges between " (master) " and " (device) ", in order of time. A cross on an arrow: falsified; at its end: lost. "
+                    "Transitions of the DUT stand beside its lifeline."
+                }
+                text x=(MASTER) y="16" text-anchor="middle" { (master) }
+                text x=(DEVICE) y="16" text-anchor="middle" { (device) }
                 line.life x1=(MASTER) y1="24" x2=(MASTER) y2=(height - 8) {}
                 line.life x1=(DEVICE) y1="24" x2=(DEVICE) y2=(height - 8) {}
-                @for (y, row) in placed { (drawn(row, y, case)) }
+                @for (y, row) in placed { (drawn(row, y, case, side)) }
             }
         }
     }
@@ -59,6 +74,8 @@ pub fn chart(case: &CaseRecord) -> Markup {
 
 fn rows(case: &CaseRecord) -> Vec<Row<'_>> {
     let mut rows = Vec::new();
+    let shown = shown(case);
+    let mut finding = None;
     for (index, entry) in case.trace.iter().enumerate() {
         for (number, step) in case.steps.iter().enumerate().filter(|(_, step)| step.executed && step.entries.0 == index)
         {
@@ -69,88 +86,135 @@ fn rows(case: &CaseRecord) -> Vec<Row<'_>> {
                 }));
             }
         }
-        rows.push(Row::Entry(entry));
+        if shown == Some(index) {
+            finding = Some(rows.len());
+        }
+        rows.push(Row::Entry(entry, shown == Some(index)));
     }
-    let left_out = rows.len().saturating_sub(MOST);
-    if left_out > 0 || case.elided > 0 {
-        let head = MOST.min(rows.len()) / 3;
-        let tail = rows.split_off(head + left_out);
-        rows.truncate(head);
-        rows.push(Row::Gap(left_out as u64 + case.elided));
-        rows.extend(tail);
+    without_middle(rows, finding, case.elided)
+}
+
+/// Keeps the beginning and a window that ends soon after the finding, or at the end when there is none.
+fn without_middle(mut rows: Vec<Row<'_>>, finding: Option<usize>, elided: u64) -> Vec<Row<'_>> {
+    let all = rows.len();
+    if all <= MOST && elided == 0 {
+        return rows;
+    }
+    let head = HEAD.min(all);
+    let upto = finding.map_or(all, |row| row.saturating_add(1 + AFTER).clamp(MOST.min(all), all));
+    let from = upto.saturating_sub(MOST - head).max(head);
+    let tail = rows.split_off(upto);
+    let window = rows.split_off(from);
+    rows.truncate(head);
+    if from > head || elided > 0 {
+        rows.push(Row::Gap(((from - head) as u64).saturating_add(elided)));
+    }
+    rows.extend(window);
+    if !tail.is_empty() {
+        rows.push(Row::Gap(tail.len() as u64));
     }
     rows
 }
 
-fn drawn(row: &Row<'_>, y: i32, case: &CaseRecord) -> Markup {
+fn drawn(row: &Row<'_>, y: i32, case: &CaseRecord, side: Side) -> Markup {
     match row {
         Row::Step(text) => html! {
             line.rule x1="0" y1=(y + 4) x2=(WIDTH) y2=(y + 4) {}
             text.soft x="0" y=(y + 18) { (short(text, 118)) }
         },
         Row::Gap(count) => html! {
-            text.soft x=((MASTER + DEVICE) / 2) y=(y + 17) text-anchor="middle" { (count) " lines left out; all that was kept is in run.jsonl" }
+            text.soft x=(MIDDLE) y=(y + 17) text-anchor="middle" { "⋮ " (count) " lines left out; what was kept is in run.jsonl" }
         },
-        Row::Entry(entry) => match &entry.what {
-            What::Exchange { sent, got, .. } => exchange(entry, sent.as_deref(), got.as_deref(), y, case),
-            other => note(entry.at, other, y),
+        Row::Entry(entry, finding) => match &entry.what {
+            What::Exchange { sent, got, .. } => {
+                html! {
+                    @if *finding { (marked(y, 46)) }
+                    (exchange(entry, sent.as_deref(), got.as_deref(), y, case, side))
+                }
+            }
+            what => html! {
+                @if *finding { (marked(y, 24)) }
+                (event(entry, what, y, side))
+            },
         },
     }
 }
 
-fn exchange(entry: &Entry, sent: Option<&str>, got: Option<&str>, y: i32, case: &CaseRecord) -> Markup {
-    let (there, back) = (y + 18, y + 38);
-    let wrong = !entry.note.is_empty();
-    let label = sent.map_or_else(|| "lost".to_owned(), |hex| out_label(hex, &case.variant));
-    let label = if wrong && sent.is_some() { format!("{label} · {}", entry.note) } else { label };
-    let answer = got.map_or_else(|| "no process data".to_owned(), |hex| in_label(hex, &case.variant));
-    let end = if sent.is_some() { DEVICE } else { (MASTER + DEVICE) / 2 };
+/// The row that shows the finding.
+fn marked(y: i32, height: i32) -> Markup {
     html! {
-        text.soft x="0" y=(there) { (format!("{:.3} ms", entry.at as f64 / 1e6)) }
-        @if entry.count > 1 { text.soft x="0" y=(back) { "x " (entry.count) } }
-        line.hit[wrong] x1=(MASTER) y1=(there) x2=(end) y2=(there) {}
-        @if sent.is_some() { (head(end, there, -1, wrong)) }
-        @if wrong { (cross(end - 26, there)) }
-        text.wrong[wrong] x=(MASTER + 12) y=(there - 4) { (short(&label, 60)) }
-        @if got.is_some() {
-            line x1=(DEVICE) y1=(back) x2=(MASTER) y2=(back) {}
-            (head(MASTER, back, 1, false))
-        }
-        text x=(MASTER + 12) y=(back - 4) { (short(&answer, 60)) }
-        @if !entry.via.is_empty() { text.soft x=(DEVICE + 10) y=(there + 10) { (visible(&entry.via.join(" "))) } }
+        rect.mark x="0" y=(y + 1) width=(WIDTH) height=(height - 2) rx="3" {}
+        text.wrong x="116" y=(y + 18) { "finding" }
     }
 }
 
-fn head(x: i32, y: i32, way: i32, hit: bool) -> Markup {
-    html! { path.head.hit[hit] d=(format!("M{x} {y} l{} -4 v8 z", way * 9)) {} }
-}
-
-fn cross(x: i32, y: i32) -> Markup {
-    html! { path.hit d=(format!("M{} {} l10 10 m0 -10 l-10 10", x - 5, y - 5)) {} }
-}
-
-fn note(at: u64, what: &What, y: i32) -> Markup {
-    let text = match what {
-        What::Set { service, value } => format!("{service} := {value}"),
-        What::Service { service, value } => format!("{service} = {value}"),
-        What::Power { on: true } => "power on".to_owned(),
-        What::Power { on: false } => "power off".to_owned(),
-        What::Acyclic { request, answer } => format!("{request} {answer}"),
-        What::Event { code, .. } => format!("Event 0x{code:04X}"),
-        What::Exchange { .. } => String::new(),
+/// Two arrows: to the DUT, and from it.
+fn exchange(entry: &Entry, sent: Option<&str>, got: Option<&str>, y: i32, case: &CaseRecord, side: Side) -> Markup {
+    let (there, back) = (y + 18, y + 38);
+    let wrong = sent.is_none() || !entry.note.is_empty();
+    let label = side.sent_label(sent, &case.variant);
+    let label = if entry.note.is_empty() { label } else { format!("{label} · {}", entry.note) };
+    let answer = side.got_label(got, &case.variant);
+    // The tester stands left of an FS-Device and right of an FS-Master.
+    let (tester, dut, way) = match side {
+        Side::Device => (MASTER, DEVICE, 1),
+        Side::Master => (DEVICE, MASTER, -1),
     };
     html! {
-        text.soft x="0" y=(y + 16) { (format!("{:.3} ms", at as f64 / 1e6)) }
-        rect x=(DEVICE + 6) y=(y + 3) width=(WIDTH - DEVICE - 8) height="18" rx="3" {}
-        text x=(DEVICE + 12) y=(y + 16) { (short(&text, 32)) }
+        text.soft x="0" y=(there) { (milliseconds(entry.at)) " ms" }
+        @if entry.count > 1 { text x="0" y=(back) { "x " (entry.count) } }
+        @if sent.is_none() {
+            path.hit d=(format!("M{tester} {there}H{MIDDLE}")) {}
+            (cross(MIDDLE, there))
+        } @else if wrong {
+            path.hit d=(arrow(tester, dut, there)) {}
+            (cross(dut - 26 * way, there))
+        } @else {
+            path d=(arrow(tester, dut, there)) {}
+        }
+        @if wrong { text.wrong x=(LABEL) y=(there - 4) { (short(&label, 60)) } }
+        @else { text x=(LABEL) y=(there - 4) { (short(&label, 60)) } }
+        @if got.is_some() { path d=(arrow(dut, tester, back)) {} }
+        text x=(LABEL) y=(back - 4) { (short(&answer, 60)) }
+        @if !entry.via.is_empty() { (beside(&entry.via.join(" "), there + 10, side)) }
     }
 }
 
-/// At most so many characters, with a sign that some were left out, none of them hostile.
-fn short(text: &str, most: usize) -> String {
-    let text = visible(text);
-    if text.chars().count() <= most {
-        return text;
+/// Text at the lifeline of the DUT, on its far side.
+fn beside(text: &str, y: i32, side: Side) -> Markup {
+    match side {
+        Side::Device => html! { text.soft x=(DEVICE + 10) y=(y) { (short(text, 34)) } },
+        Side::Master => html! { text.soft x=(MASTER - 6) y=(y) text-anchor="end" { (short(text, 14)) } },
     }
-    text.chars().take(most - 1).chain(['…']).collect()
+}
+
+/// A line and its tip in one path; the tip is a part of its own, or the line would be filled up to it.
+fn arrow(from: i32, to: i32, y: i32) -> String {
+    let back = if to > from { -9 } else { 9 };
+    format!("M{from} {y}H{to}M{to} {y}l{back} -4v8z")
+}
+
+/// What says falsified on an arrow, and lost at its end.
+fn cross(x: i32, y: i32) -> Markup {
+    html! { path.cross d=(format!("M{} {} l10 10m0 -10l-10 10", x - 5, y - 5)) {} }
+}
+
+/// What is no exchange: a box at the lifeline of the DUT.
+fn event(entry: &Entry, what: &What, y: i32, side: Side) -> Markup {
+    let mut text = note(what);
+    if !entry.via.is_empty() {
+        text = format!("{text} {}", entry.via.join(" "));
+    }
+    if entry.count > 1 {
+        text = format!("{text} x {}", entry.count);
+    }
+    let (x, width) = match side {
+        Side::Device => (DEVICE + 6, WIDTH - DEVICE - 8),
+        Side::Master => (MASTER + 6, WIDTH - DEVICE - 8),
+    };
+    html! {
+        text.soft x="0" y=(y + 16) { (milliseconds(entry.at)) " ms" }
+        rect x=(x) y=(y + 3) width=(width) height="18" rx="3" {}
+        text x=(x + 6) y=(y + 16) { (short(&text, 32)) }
+    }
 }

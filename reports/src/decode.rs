@@ -5,61 +5,124 @@ use fsct_protocol::ProtMode;
 use fsct_protocol::crc::Reading;
 use fsct_protocol::spdu::View;
 
+/// Which machine is under test, and so which way an SPDU went.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The DUT is an FS-Device: it is sent output SPDUs and answers with input SPDUs.
+    Device,
+    /// The DUT is an FS-Master: the other way round.
+    Master,
+}
+
+impl Side {
+    /// The role as it stands in a record.
+    pub fn of(role: &str) -> Side {
+        if role == "master" { Side::Master } else { Side::Device }
+    }
+
+    /// What was sent to the DUT, field by field; `None` was lost on the way.
+    pub fn sent(self, hex: Option<&str>, variant: &VariantInfo) -> String {
+        match (hex, self) {
+            (None, _) => "lost".to_owned(),
+            (Some(hex), Side::Device) => out_spdu(hex, variant),
+            (Some(hex), Side::Master) => in_spdu(hex, variant),
+        }
+    }
+
+    /// What the DUT presented, field by field; `None` is no process data.
+    pub fn got(self, hex: Option<&str>, variant: &VariantInfo) -> String {
+        match (hex, self) {
+            (None, _) => "no process data".to_owned(),
+            (Some(hex), Side::Device) => in_spdu(hex, variant),
+            (Some(hex), Side::Master) => out_spdu(hex, variant),
+        }
+    }
+
+    /// What was sent to the DUT, short.
+    pub fn sent_label(self, hex: Option<&str>, variant: &VariantInfo) -> String {
+        match (hex, self) {
+            (None, _) => "lost".to_owned(),
+            (Some(hex), Side::Device) => out_label(hex, variant),
+            (Some(hex), Side::Master) => in_label(hex, variant),
+        }
+    }
+
+    /// What the DUT presented, short.
+    pub fn got_label(self, hex: Option<&str>, variant: &VariantInfo) -> String {
+        match (hex, self) {
+            (None, _) => "no process data".to_owned(),
+            (Some(hex), Side::Device) => in_label(hex, variant),
+            (Some(hex), Side::Master) => out_label(hex, variant),
+        }
+    }
+}
+
 /// What can be said of an image.
 enum Image<'o> {
     Zero,
-    Spdu(View<'o>, Reading),
+    /// An SPDU, how its signature reads, and what follows it.
+    Spdu(View<'o>, Reading, &'o [u8]),
+    /// Octets an SPDU has, octets that are there.
     Other(usize, usize),
 }
 
-/// `PDout 5A11 · PortNum 01 · MCount 3 · setSD 0 · ChFAckReq 0 · CRC ok`, for an SPDU to the FS-Device.
-pub fn out_spdu(hex: &str, variant: &VariantInfo) -> String {
+/// `PDout 5A 11 · PortNum 1 · MCount 3 · setSD 0 · ChFAckReq 0 · CRC ok`, for an SPDU to the FS-Device.
+fn out_spdu(hex: &str, variant: &VariantInfo) -> String {
     told(hex, variant, variant.pd_out, |view| {
         let control = view.control();
         format!(
-            "PDout {} · PortNum {:02X} · MCount {} · setSD {} · ChFAckReq {}",
+            "PDout {} · PortNum {:X} · MCount {} · setSD {} · ChFAckReq {}{}",
             octets(view.pd()),
             view.port_num(),
             control.mcount,
             u8::from(control.set_sd),
-            u8::from(control.ch_f_ack_req)
+            u8::from(control.ch_f_ack_req),
+            reserved(view.octet(), control.to_octet())
         )
     })
 }
 
-/// `PDin A5 · PortNum FE · DCount_i 4 · SDset 0 · DCommErr 0 · DTimeout 0 · CRC ok`, for an answer.
-pub fn in_spdu(hex: &str, variant: &VariantInfo) -> String {
+/// `PDin A5 · PortNum FE (=1 inverted) · DCount_i 4 · SDset 0 · DCommErr 0 · DTimeout 0 · CRC ok`, for an answer.
+fn in_spdu(hex: &str, variant: &VariantInfo) -> String {
     told(hex, variant, variant.pd_in, |view| {
         let status = view.status();
         format!(
-            "PDin {} · PortNum {:02X} · DCount_i {} · SDset {} · DCommErr {} · DTimeout {}",
+            "PDin {} · PortNum {:02X} (={:X} inverted) · DCount_i {} · SDset {} · DCommErr {} · DTimeout {}{}",
             octets(view.pd()),
             view.port_num(),
+            !view.port_num(),
             status.dcount_i,
             u8::from(status.sd_set),
             u8::from(status.d_comm_err),
-            u8::from(status.d_timeout)
+            u8::from(status.d_timeout),
+            reserved(view.octet(), status.to_octet())
         )
     })
 }
 
+/// Reserved bits that are 1, as they stand in the octet; nothing when all are 0.
+fn reserved(octet: u8, known: u8) -> String {
+    match octet ^ known {
+        0 => String::new(),
+        bits => format!(" · reserved bits {bits:08b}"),
+    }
+}
+
 /// `MCount 3 setSD SD`: counter, bits that are 1, and whether process data go along.
-pub fn out_label(hex: &str, variant: &VariantInfo) -> String {
+fn out_label(hex: &str, variant: &VariantInfo) -> String {
     label(hex, variant, variant.pd_out, |view| {
         let control = view.control();
-        let mut text = format!("MCount {}", control.mcount);
-        flag(&mut text, control.set_sd, "setSD");
+        let mut text = format!("MCount {} setSD {}", control.mcount, u8::from(control.set_sd));
         flag(&mut text, control.ch_f_ack_req, "ChFAckReq");
         text
     })
 }
 
 /// `DCount_i 4 SDset DCommErr PD`: counter, bits that are 1, and whether process data go along.
-pub fn in_label(hex: &str, variant: &VariantInfo) -> String {
+fn in_label(hex: &str, variant: &VariantInfo) -> String {
     label(hex, variant, variant.pd_in, |view| {
         let status = view.status();
-        let mut text = format!("DCount_i {}", status.dcount_i);
-        flag(&mut text, status.sd_set, "SDset");
+        let mut text = format!("DCount_i {} SDset {}", status.dcount_i, u8::from(status.sd_set));
         flag(&mut text, status.d_comm_err, "DCommErr");
         flag(&mut text, status.d_timeout, "DTimeout");
         text
@@ -78,7 +141,10 @@ fn told(hex: &str, variant: &VariantInfo, pd: u8, fields: impl Fn(&View<'_>) -> 
     match image(&raw, variant, pd) {
         Image::Zero => "all zero".to_owned(),
         Image::Other(expected, found) => format!("{found} octets, an SPDU has {expected}: {}", octets(&raw)),
-        Image::Spdu(view, reading) => format!("{} · {}", fields(&view), crc(&view, reading, variant)),
+        Image::Spdu(view, reading, rest) => {
+            let rest = if rest.is_empty() { String::new() } else { format!(" · then {}", octets(rest)) };
+            format!("{} · {}{rest}", fields(&view), crc(&view, reading, variant))
+        }
     }
 }
 
@@ -86,8 +152,8 @@ fn label(hex: &str, variant: &VariantInfo, pd: u8, fields: impl Fn(&View<'_>) ->
     let Some(raw) = unhex(hex) else { return "no octets".to_owned() };
     match image(&raw, variant, pd) {
         Image::Zero => "all zero".to_owned(),
-        Image::Other(_, found) => format!("{found} octets"),
-        Image::Spdu(view, reading) => {
+        Image::Other(expected, found) => format!("{found} octets, not {expected}"),
+        Image::Spdu(view, reading, _) => {
             let data = match view.pd() {
                 [] => "",
                 data if data.iter().all(|octet| *octet == 0) => " SD",
@@ -100,12 +166,11 @@ fn label(hex: &str, variant: &VariantInfo, pd: u8, fields: impl Fn(&View<'_>) ->
 }
 
 fn image<'o>(raw: &'o [u8], variant: &VariantInfo, pd: u8) -> Image<'o> {
-    if raw.iter().all(|octet| *octet == 0) {
-        return Image::Zero;
-    }
     let reading = if variant.leading_octet { Reading::LeadingOctet } else { Reading::Preset };
+    let length = mode(variant).spdu_octets(pd.into());
     match View::new(raw, mode(variant), pd.into()) {
-        Ok(view) => Image::Spdu(view, reading),
+        Ok(view) if view.is_all_zero() => Image::Zero,
+        Ok(view) => Image::Spdu(view, reading, raw.get(length..).unwrap_or_default()),
         Err(error) => Image::Other(error.expected, error.found),
     }
 }
@@ -114,7 +179,7 @@ fn crc(view: &View<'_>, reading: Reading, variant: &VariantInfo) -> String {
     let digits = 2 * mode(variant).signature_octets();
     match view.signature_matches(reading) {
         true => "CRC ok".to_owned(),
-        false => format!("CRC {:0digits$X}, computed {:0digits$X}", view.signature(), view.computed(reading)),
+        false => format!("CRC wrong: {:0digits$X}, computed {:0digits$X}", view.signature(), view.computed(reading)),
     }
 }
 
@@ -125,7 +190,7 @@ fn mode(variant: &VariantInfo) -> ProtMode {
 fn octets(octets: &[u8]) -> String {
     match octets {
         [] => "-".to_owned(),
-        octets => octets.iter().map(|octet| format!("{octet:02X}")).collect(),
+        octets => octets.iter().map(|octet| format!("{octet:02X}")).collect::<Vec<_>>().join(" "),
     }
 }
 

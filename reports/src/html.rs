@@ -1,10 +1,10 @@
 //! `report.html`: one file, readable without script and without network.
 
-use crate::chart::chart;
+use crate::case_html::{self, Room};
 use crate::journal::Run;
-use crate::record::{CaseRecord, Execution, Reason, RequirementRef, Verdict};
-use crate::summary::{Summary, execution_name, verdict_name};
-use crate::text::visible as clean;
+use crate::record::{CaseRecord, Execution, Verdict};
+use crate::summary::Summary;
+use crate::text::{short, visible as clean};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::collections::BTreeMap;
 
@@ -13,13 +13,20 @@ const STYLE: &str = include_str!("style.css");
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:";
 /// Cases of one id shown in full when they did not pass.
 const IN_FULL: usize = 3;
+/// Octets that details may take of the page: those of cases that need a reader, then those of one case an id. With the
+/// lists the page stays below 5 MB at 10 000 cases.
+const ROOM: (usize, usize) = (2_000_000, 1_000_000);
 /// Points of a sweep listed for one id.
 const LISTED: usize = 120;
+/// Characters of a name shown in headings and facts.
+const NAME: usize = 120;
 
 /// The report of a run.
 pub fn render(run: &Run) -> String {
     let summary = Summary::of(run);
-    let title = format!("fsct: {} {}", clean(&run.header.dut.product), clean(&run.header.dut.version));
+    let dut = &run.header.dut;
+    let title = format!("fsct: {} {}", short(&dut.product, NAME), short(&dut.version, NAME));
+    let room = Room::new(&dut.role);
     let markup = html! {
         (DOCTYPE)
         html lang="en" {
@@ -32,15 +39,15 @@ pub fn render(run: &Run) -> String {
             }
             body {
                 main {
-                    h1 { "IO-Link Safety conformance: " (clean(&run.header.dut.product)) }
-                    p.soft { "Evidence for an assessment, never a certificate. Made by fsct " (clean(&run.header.fsct)) " from run.jsonl." }
+                    h1 { "IO-Link Safety conformance: " (short(&dut.product, NAME)) }
+                    p.soft { "Evidence for an assessment, not a certificate. Made by fsct " (short(&run.header.fsct, NAME)) " from run.jsonl." }
                     (banner(&summary))
                     (incomplete(run, &summary))
                     (facts(run, &summary))
                     (coverage(&summary))
-                    (attention(run))
-                    (suites(run))
                     (tolerances(run, &summary))
+                    (attention(run, &room))
+                    (suites(run, &room))
                     (not_applicable(run))
                 }
             }
@@ -49,14 +56,16 @@ pub fn render(run: &Run) -> String {
     markup.into_string()
 }
 
-/// A verdict in a word with its sign, so that colour is never the only one.
-fn word(case: &CaseRecord) -> (&'static str, &'static str) {
+/// A verdict in a word with its sign, so that colour is never the only one, and its class.
+pub fn word(case: &CaseRecord) -> (&'static str, &'static str) {
     match (case.execution, case.verdict) {
-        (Execution::Ok, Verdict::Pass | Verdict::NotApplicable) => ("✓ pass", "pass"),
-        (Execution::Ok, Verdict::Remark) => ("● remark", "remark"),
         (_, Verdict::Fail) => ("✗ fail", "fail"),
-        (Execution::Ok, _) => ("? inconclusive", "inconclusive"),
-        _ => ("! not executed", "error"),
+        (Execution::Ok, Verdict::Pass) => ("✓ pass", "pass"),
+        (Execution::Ok, Verdict::NotApplicable) => ("– not applicable", "soft"),
+        (Execution::Ok, Verdict::Remark) => ("● remark", "remark"),
+        (Execution::Ok, Verdict::Inconclusive) => ("? inconclusive", "inconclusive"),
+        (Execution::Aborted, _) if case.trace.is_empty() => ("! not begun", "not-begun"),
+        _ => ("! not executed as meant", "error"),
     }
 }
 
@@ -64,20 +73,23 @@ fn banner(summary: &Summary) -> Markup {
     let (class, said) = match summary.exit_code() {
         0 => ("pass", "✓ Conformant in every case that ran"),
         1 => ("fail", "✗ Not conformant"),
-        3 => ("error", "! Not all cases were executed as meant"),
-        4 => ("error", "! Nothing ran"),
-        _ => ("inconclusive", "? Inconclusive"),
+        3 => ("error", "! Not everything was executed as meant"),
+        4 => ("error", "! Nothing ran, so nothing is shown"),
+        _ => ("inconclusive", "? Something stayed inconclusive"),
     };
-    let counts: Vec<String> = summary
-        .verdicts
-        .iter()
-        .filter(|(_, count)| **count > 0)
-        .map(|(name, count)| format!("{count} {name}"))
-        .collect();
+    let counted = |counts: &BTreeMap<String, usize>, but: &str| {
+        let counts = counts.iter().filter(|(name, count)| **count > 0 && *name != but);
+        counts.map(|(name, count)| format!("{count} {name}")).collect::<Vec<_>>().join(", ")
+    };
+    let (verdicts, troubles) = (counted(&summary.verdicts, ""), counted(&summary.execution, "ok"));
     html! {
         div class=(format!("banner {class}")) role="status" {
             strong { (said) }
-            " · " (summary.cases) " cases: " (counts.join(", "))
+            div {
+                (summary.cases) " cases"
+                @if !verdicts.is_empty() { ": " (verdicts) }
+                @if !troubles.is_empty() { " · execution: " (troubles) }
+            }
         }
     }
 }
@@ -87,9 +99,9 @@ fn incomplete(run: &Run, summary: &Summary) -> Markup {
     html! {
         @if summary.partial {
             p.fail {
-                span.word { "This record is partial: " }
+                span.word { "! This record is partial: " }
                 (summary.cases) " of " (summary.planned) " cases are in it"
-                @if interrupted { ", the user stopped the run" }
+                @if interrupted { ", the run was stopped by the user" }
                 @else if run.footer.is_none() { ", the run did not come to its end" }
                 @if let Some(damage) = &run.damaged { " (" (clean(damage)) ")" }
                 "."
@@ -100,34 +112,72 @@ fn incomplete(run: &Run, summary: &Summary) -> Markup {
 
 fn facts(run: &Run, summary: &Summary) -> Markup {
     let dut = &run.header.dut;
+    let name = |text: &str| short(text, NAME);
+    let own_words = [&dut.vendor, &dut.product, &dut.version].map(|text| name(text));
+    let own_words: Vec<String> = own_words.into_iter().filter(|text| !text.is_empty()).collect();
     html! {
         dl {
-            dt { "Device under test" } dd { (clean(&dut.vendor)) " · " (clean(&dut.product)) " · " (clean(&dut.version)) " (in its own words)" }
-            dt { "Address" } dd { code { (clean(&dut.url)) } }
-            dt { "Role" } dd { (clean(&dut.role)) }
-            dt { "Served" } dd { (clean(&dut.pcos.join(", "))) }
-            dt { "Clock" } dd { (clean(&dut.clock)) ", resolution " (dut.resolution_ns) " ns, uncertainty ± " (dut.uncertainty_ns) " ns" }
-            dt { "Offers" } dd { @for offer in &dut.offers { (clean(offer)) br; } }
-            dt { "Profile" } dd { (clean(&run.header.profile)) }
+            dt { "Device under test" } dd { (own_words.join(" · ")) span.soft { " in its own words" } }
+            dt { "Address" } dd { code { (short(&dut.url, 4 * NAME)) } }
+            dt { "Role" } dd { (name(&dut.role)) }
+            dt { "Served" } dd { (short(&dut.pcos.join(", "), 4 * NAME)) }
+            dt { "Clock" } dd { (name(&dut.clock)) ", resolution " (dut.resolution_ns) " ns, uncertainty ± " (dut.uncertainty_ns) " ns" }
+            @if !dut.offers.is_empty() {
+                dt { "Offers" } dd { @for offer in dut.offers.iter().take(LISTED) { (name(offer)) br; } }
+            }
+            dt { "Profile" } dd { (name(&run.header.profile)) }
             dt { "Seed" } dd { (summary.seed) }
-            dt { "Not applicable" } dd { (summary.not_applicable) " cases" }
+            dt { "Cases" } dd { (summary.cases) " of " (summary.planned) " planned, " (summary.not_applicable) " more do not apply" }
         }
     }
 }
 
 fn coverage(summary: &Summary) -> Markup {
+    let taken = summary.transitions.values().filter(|count| **count > 0).count();
+    let mut transitions: Vec<_> = summary.transitions.iter().collect();
+    transitions.sort_by_key(|(name, _)| (name.len(), *name));
     html! {
-        h2 { "Transitions taken" }
+        h2 { "Transitions of the DUT" }
+        p { (taken) " of " (transitions.len()) " were taken" @if taken < transitions.len() { "; the others are marked “never”" } "." }
         ul.cells {
-            @for (name, count) in &summary.transitions {
-                li.none[*count == 0] { span.word { (clean(name)) } " " @if *count == 0 { "never" } @else { (count) } }
+            @for (name, count) in transitions {
+                li.none[*count == 0] { span.word { (clean(name)) } " " @if *count == 0 { "never" } @else { "× " (count) } }
             }
         }
     }
 }
 
-/// What needs a reader: failures first, then what is open, then remarks.
-fn attention(run: &Run) -> Markup {
+fn tolerances(run: &Run, summary: &Summary) -> Markup {
+    let known = &run.header.tolerances;
+    html! {
+        h2 { "Tolerances" }
+        p { "What is let pass where the standard is silent or contradicts itself: " (known.len()) " in force, " (summary.tolerances.len()) " made use of." }
+        @if !summary.tolerances.is_empty() {
+            div.scroll tabindex="0" role="group" aria-label="Tolerances made use of" {
+                table {
+                    thead { tr { th scope="col" { "Made use of" } th scope="col" { "What is let pass" } th.number scope="col" { "Cases" } } }
+                    @for (id, count) in &summary.tolerances {
+                        tr {
+                            th scope="row" { "● " (clean(id)) }
+                            td { @match known.get(id) { Some(text) => (clean(text)), None => "not among those in force" } }
+                            td.number { (count) }
+                        }
+                    }
+                }
+            }
+        }
+        @if !known.is_empty() {
+            details {
+                summary { "All " (known.len()) " in force" }
+                dl { @for (id, text) in known { dt { (clean(id)) } dd { (clean(text)) } } }
+            }
+        }
+    }
+}
+
+/// What needs a reader: failures first, then what was not executed, what is open, and remarks.
+fn attention(run: &Run, room: &Room) -> Markup {
+    room.add(ROOM.0);
     let groups = [
         ("Failures", "fail"),
         ("Not executed as meant", "error"),
@@ -139,139 +189,135 @@ fn attention(run: &Run) -> Markup {
             @let cases: Vec<&CaseRecord> = run.cases.iter().filter(|case| word(case).1 == class).collect();
             @if !cases.is_empty() {
                 h2 { (title) " (" (cases.len()) ")" }
-                (group(&cases))
+                (group(&cases, room))
             }
         }
+        (not_begun(run))
     }
 }
 
-fn group(cases: &[&CaseRecord]) -> Markup {
-    let mut by_id: BTreeMap<&str, Vec<&CaseRecord>> = BTreeMap::new();
-    cases.iter().for_each(|case| by_id.entry(&case.id).or_default().push(case));
-    html! {
-        @for (id, cases) in by_id {
-            @for case in cases.iter().take(IN_FULL) {
-                section.case { (full(case)) }
-            }
-            @if cases.len() > IN_FULL {
-                p.soft { (cases.len() - IN_FULL) " more of " (clean(id)) " like these:" }
-                p.keys { (keys(&cases[IN_FULL..])) }
-            }
-        }
+/// Cases that were never tried have nothing to show but why; one line a reason, or they would bury the others.
+fn not_begun(run: &Run) -> Markup {
+    let mut reasons: BTreeMap<String, Vec<&str>> = BTreeMap::new();
+    for case in run.cases.iter().filter(|case| word(case).1 == "not-begun") {
+        let why = case.reasons.first().map_or("no reason is recorded", |reason| &reason.observed);
+        reasons.entry(short(why, 2 * NAME)).or_default().push(&case.key);
     }
-}
-
-fn full(case: &CaseRecord) -> Markup {
-    let (said, class) = word(case);
     html! {
-        h3 { span class=(format!("word {class}")) { (said) } " " (clean(&case.id)) ": " (clean(&case.title)) }
-        p.soft { code { (clean(&case.key)) } " · " (clean(&case.place)) " · " (execution_name(case.execution)) }
-        p { "Judges " (requirements(case)) }
-        @for reason in &case.reasons { (why(reason, case)) }
-        @for (id, text) in &case.tolerances { p.remark { span.word { (clean(id)) } " " (clean(text)) } }
-        (body(case))
-        p { "Run it again:" }
-        pre { (clean(&case.replay)) }
-    }
-}
-
-fn requirements(case: &CaseRecord) -> String {
-    let of = |record: &RequirementRef| clean(&format!("{} (clause {}, {})", record.id, record.clause, record.level));
-    case.requirements.iter().map(of).collect::<Vec<_>>().join(", ")
-}
-
-fn why(reason: &Reason, case: &CaseRecord) -> Markup {
-    html! {
-        dl {
-            dt { (verdict_name(reason.verdict)) } dd { (clean(&reason.kind)) @if !reason.clause.is_empty() { " · clause " (clean(&reason.clause)) } }
-            dt { "at step " (reason.step) } dd { @if let Some(step) = case.steps.get(reason.step) { code { (clean(&step.text)) } } }
-            dt { "expected" } dd { (clean(&reason.expected)) }
-            dt { "observed" } dd { span.word { (clean(&reason.observed)) } }
-        }
-    }
-}
-
-/// Steps with their checks, and the chart.
-fn body(case: &CaseRecord) -> Markup {
-    html! {
-        ol.steps start="0" {
-            @for step in &case.steps {
-                li {
-                    code { (clean(&step.text)) }
-                    @if !step.executed { " " span.soft { "(not reached)" } }
-                    ul.checks {
-                        @for check in &step.checks {
-                            @if check.met { li { "✓ " (clean(&check.key)) " " (clean(&check.observed)) } }
-                            @else { li.fail { "✗ " (clean(&check.key)) " " (clean(&check.observed)) ", not " (clean(&check.expected)) } }
-                        }
-                    }
+        @if !reasons.is_empty() {
+            h2 { "Not begun (" (reasons.values().map(Vec::len).sum::<usize>()) ")" }
+            @for (why, keys) in &reasons {
+                details {
+                    summary { span.word.not-begun { "! " (keys.len()) " cases" } ": " (why) }
+                    p.keys { (listed(keys.iter().copied())) }
                 }
             }
         }
-        @if !case.trace.is_empty() { (chart(case)) }
     }
 }
 
-fn suites(run: &Run) -> Markup {
+fn group(cases: &[&CaseRecord], room: &Room) -> Markup {
+    let mut by_id: BTreeMap<&str, Vec<&CaseRecord>> = BTreeMap::new();
+    cases.iter().for_each(|case| by_id.entry(&case.id).or_default().push(case));
+    let mut shown = Vec::new();
+    let mut unshown: Vec<&str> = Vec::new();
+    for (id, cases) in by_id {
+        let first = cases.iter().take(IN_FULL).map_while(|case| case_html::full(case, room));
+        let first: Vec<Markup> = first.collect();
+        let others = cases.get(first.len()..).unwrap_or_default();
+        if first.is_empty() {
+            unshown.extend(others.iter().map(|case| case.key.as_str()));
+        } else {
+            shown.push((id, first, others.to_vec()));
+        }
+    }
+    html! {
+        @for (id, first, others) in &shown {
+            @for case in first { (case) }
+            @if !others.is_empty() {
+                details {
+                    summary { (others.len()) " more of " (clean(id)) " like these" }
+                    p.keys { (keys(others)) }
+                }
+            }
+        }
+        @if !unshown.is_empty() {
+            details {
+                summary { (unshown.len()) " more, not shown to keep this page small; all of them are in run.jsonl" }
+                p.keys { (listed(unshown.iter().copied())) }
+            }
+        }
+    }
+}
+
+fn suites(run: &Run, room: &Room) -> Markup {
     let mut suites: BTreeMap<&str, BTreeMap<&str, Vec<&CaseRecord>>> = BTreeMap::new();
     for case in &run.cases {
         suites.entry(&case.suite).or_default().entry(&case.id).or_default().push(case);
     }
+    room.add(ROOM.1);
     html! {
         h2 { "All cases" }
         @for (suite, ids) in &suites {
-            h3 { (clean(suite)) }
-            @for (id, cases) in ids { (row(id, cases)) }
+            h3 { (clean(suite)) span.soft { " · " (ids.values().map(Vec::len).sum::<usize>()) " cases" } }
+            @for (id, cases) in ids { (row(id, cases, room)) }
         }
     }
 }
 
-fn row(id: &str, cases: &[&CaseRecord]) -> Markup {
+/// An id: verdicts, points, and one of its cases, the first that is not shown above.
+fn row(id: &str, cases: &[&CaseRecord], room: &Room) -> Markup {
     let mut counts: BTreeMap<(&str, &str), usize> = BTreeMap::new();
     cases.iter().for_each(|case| *counts.entry(word(case)).or_default() += 1);
-    html! {
-        details {
-            summary {
-                span.word { (clean(id)) } " "
-                @if let Some(case) = cases.first() { (clean(&case.title)) }
-                @for ((said, class), count) in &counts { " · " span class=(class) { (said) @if *count > 1 { " x " (count) } } }
-            }
-            @if let Some(case) = cases.first() {
-                p.soft { "Judges " (requirements(case)) " · " (clean(&case.place)) }
-                p.keys { (keys(cases)) }
-                p { "Shown: " code { (clean(&case.key)) } }
-                (body(case))
-            }
-        }
-    }
-}
-
-/// The points of a sweep, compactly.
-fn keys(cases: &[&CaseRecord]) -> String {
-    let point = |case: &&CaseRecord| case.sweep.iter().map(|(_, value)| clean(value)).collect::<Vec<_>>().join(" ");
-    let mut text = cases.iter().take(LISTED).map(point).collect::<Vec<_>>().join(", ");
-    if cases.len() > LISTED {
-        text += &format!(" and {} more, all in run.jsonl", cases.len() - LISTED);
-    }
-    text
-}
-
-fn tolerances(run: &Run, summary: &Summary) -> Markup {
-    html! {
-        h2 { "Tolerances in force" }
-        p { "Where the standard is silent or contradicts itself. Those made use of are shown with the number of cases." }
-        div.scroll {
-            table {
-                tr { th { "Id" } th { "What is let pass" } th.number { "Cases" } }
-                @for (id, text) in &run.header.tolerances {
-                    tr {
-                        td { (clean(id)) } td { (clean(text)) }
-                        td.number { @match summary.tolerances.get(id) { Some(count) => { span.word { (count) } }, None => "–" } }
+    let title = cases.first().map_or_else(String::new, |case| short(&case.title, NAME));
+    let heading = html! {
+        span.word { (clean(id)) } " " (title)
+        @for ((said, class), count) in &counts { " · " span class=(class) { (said) " × " (count) } }
+    };
+    let details = html! {
+        @if let Some(case) = cases.first() { p.soft { "Judges " (case_html::requirements(case)) " · " (clean(&case.place)) } }
+        p.keys { (keys(cases)) }
+    };
+    match room.take(details) {
+        None => html! { p { (heading) } },
+        Some(details) => html! {
+            details {
+                summary { (heading) }
+                (details)
+                @match cases.iter().find(|case| matches!(word(case).1, "pass" | "soft")) {
+                    None => p { "None of its cases passed; see above." },
+                    Some(case) => {
+                        @match case_html::body(case, room) {
+                            None => p { "Steps and chart are left out to keep this page small; they are in run.jsonl." },
+                            Some(body) => { p { "Shown: " code { (short(&case.key, 2 * NAME)) } } (body) }
+                        }
                     }
                 }
             }
-        }
+        },
     }
+}
+
+/// As many texts as a page can carry.
+fn listed<'t>(texts: impl ExactSizeIterator<Item = &'t str>) -> String {
+    let more = texts.len().saturating_sub(LISTED);
+    let text = texts.take(LISTED).map(|text| short(text, NAME)).collect::<Vec<_>>().join(", ");
+    if more > 0 { format!("{text} and {more} more, all in run.jsonl") } else { text }
+}
+
+/// The points of a sweep with their verdicts when those differ, compactly.
+fn keys(cases: &[&CaseRecord]) -> String {
+    let mixed = cases.iter().any(|case| Some(word(case)) != cases.first().map(|first| word(first)));
+    let point = |case: &&CaseRecord| {
+        let point = case.sweep.iter().map(|(_, value)| value.as_str()).collect::<Vec<_>>().join(" ");
+        let point = if point.is_empty() { case.key.clone() } else { point };
+        if mixed { format!("{} {point}", word(case).0.split(' ').next().unwrap_or_default()) } else { point }
+    };
+    let names = cases.first().map_or_else(Vec::new, |case| case.sweep.iter().map(|(name, _)| name.as_str()).collect());
+    let mut text = if names.is_empty() { String::new() } else { format!("{}: ", short(&names.join(" "), NAME)) };
+    let points: Vec<String> = cases.iter().map(point).collect();
+    text += &listed(points.iter().map(String::as_str));
+    text
 }
 
 fn not_applicable(run: &Run) -> Markup {
@@ -283,7 +329,7 @@ fn not_applicable(run: &Run) -> Markup {
             @for (term, keys) in &terms {
                 details {
                     summary { (keys.len()) " cases: " (clean(term)) }
-                    p.keys { (clean(&keys.iter().take(LISTED).copied().collect::<Vec<_>>().join(", "))) }
+                    p.keys { (listed(keys.iter().copied())) }
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! The journal: `run.jsonl`, one line at a time, flushed, so that nothing recorded is lost when a run ends early.
 
 use crate::record::{CaseRecord, Footer, Header, Line, SCHEMA};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
 use std::path::Path;
@@ -109,44 +109,155 @@ pub enum ReadError {
     },
 }
 
-/// Reads the journal of a folder. A last line that was cut off is tolerated and stated.
+/// A journal being read, case by case: an iterator over the cases in the order they ran, flat in memory however long the
+/// run was. Footer and damage are known once it has come to its end.
+#[derive(Debug)]
+pub struct Reader {
+    lines: Lines,
+    header: Header,
+    footer: Option<Footer>,
+    damaged: Option<String>,
+    ended: bool,
+}
+
+impl Reader {
+    /// Opens the journal of a folder and reads its header.
+    ///
+    /// # Errors
+    /// [`ReadError`] when there is no file, or its first line is no header of this schema.
+    pub fn open(folder: &Path) -> Result<Reader, ReadError> {
+        let mut lines = Lines::open(folder)?;
+        if !lines.advance()? {
+            return Err(lines.wrong("the first line is missing".to_owned()));
+        }
+        // The schema comes first: a header of another version need not have the fields of this one.
+        if let Ok(Stated { header: Schema { schema } }) = serde_json::from_slice(&lines.octets)
+            && schema != SCHEMA
+        {
+            return Err(ReadError::Schema { path: lines.path, found: schema });
+        }
+        match lines.parsed()? {
+            Line::Header(header) => Ok(Reader { lines, header: *header, footer: None, damaged: None, ended: false }),
+            _ => Err(lines.misplaced()),
+        }
+    }
+
+    /// The first line.
+    pub const fn header(&self) -> &Header {
+        &self.header
+    }
+
+    /// The last line; `None` before the end, and when the run did not come to its end.
+    pub const fn footer(&self) -> Option<&Footer> {
+        self.footer.as_ref()
+    }
+
+    /// What is wrong with the last line, when it was cut off.
+    pub fn damaged(&self) -> Option<&str> {
+        self.damaged.as_deref()
+    }
+
+    /// The next case; `None` at the end, cut off or not.
+    fn case(&mut self) -> Result<Option<CaseRecord>, ReadError> {
+        while self.lines.advance()? {
+            match self.lines.parsed() {
+                Ok(Line::Case(case)) if self.footer.is_none() => return Ok(Some(*case)),
+                Ok(Line::Footer(footer)) if self.footer.is_none() => self.footer = Some(footer),
+                Ok(_) => return Err(self.lines.misplaced()),
+                Err(error) if self.lines.is_whole() => return Err(error),
+                Err(_) => {
+                    let (number, length) = (self.lines.number, self.lines.octets.len());
+                    self.damaged = Some(format!("line {number} was cut off after {length} octets"));
+                }
+            }
+        }
+        Ok(None)
+    }
+}
+
+impl Iterator for Reader {
+    type Item = Result<CaseRecord, ReadError>;
+
+    /// The next case. After an error or the end there is nothing more.
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.ended {
+            return None;
+        }
+        let next = self.case().transpose();
+        self.ended = !matches!(next, Some(Ok(_)));
+        next
+    }
+}
+
+/// The lines of a journal, one at a time.
+#[derive(Debug)]
+struct Lines {
+    file: BufReader<File>,
+    path: String,
+    /// Number of the line read last, from 1.
+    number: usize,
+    /// That line, with its end if it has one.
+    octets: Vec<u8>,
+}
+
+impl Lines {
+    fn open(folder: &Path) -> Result<Lines, ReadError> {
+        let file = folder.join(FILE);
+        let path = file.display().to_string();
+        match File::open(&file) {
+            Ok(file) => Ok(Lines { file: BufReader::new(file), path, number: 0, octets: Vec::new() }),
+            Err(error) => Err(ReadError::Io { path, error }),
+        }
+    }
+
+    /// Reads the next line; `false` at the end of the file.
+    fn advance(&mut self) -> Result<bool, ReadError> {
+        self.octets.clear();
+        self.number += 1;
+        let read = self.file.by_ref().take(MAX_LINE).read_until(b'\n', &mut self.octets);
+        read.map_err(|error| ReadError::Io { path: self.path.clone(), error })?;
+        if self.octets.len() as u64 == MAX_LINE && !self.is_whole() {
+            return Err(self.wrong(format!("the line is longer than {MAX_LINE} octets")));
+        }
+        Ok(!self.octets.is_empty())
+    }
+
+    fn is_whole(&self) -> bool {
+        self.octets.last() == Some(&b'\n')
+    }
+
+    fn parsed(&self) -> Result<Line, ReadError> {
+        serde_json::from_slice(&self.octets)
+            .map_err(|error| self.wrong(format!("the line is no line of a record ({error})")))
+    }
+
+    fn misplaced(&self) -> ReadError {
+        self.wrong("the line is not where it belongs: a header first, then cases, a footer last".to_owned())
+    }
+
+    fn wrong(&self, what: String) -> ReadError {
+        ReadError::Line { path: self.path.clone(), line: self.number, what }
+    }
+}
+
+/// As much of a first line as every version of the schema has.
+#[derive(Deserialize)]
+struct Stated {
+    header: Schema,
+}
+
+/// See [`Stated`].
+#[derive(Deserialize)]
+struct Schema {
+    schema: String,
+}
+
+/// Reads the journal of a folder as a whole. A last line that was cut off is tolerated and stated.
 ///
 /// # Errors
 /// [`ReadError`].
 pub fn read(folder: &Path) -> Result<Run, ReadError> {
-    let path = folder.join(FILE);
-    let name = path.display().to_string();
-    let io = |error| ReadError::Io { path: name.clone(), error };
-    let wrong = |line, what: String| ReadError::Line { path: name.clone(), line, what };
-    let mut reader = BufReader::new(File::open(&path).map_err(io)?);
-    let (mut header, mut cases, mut footer, mut damaged) = (None, Vec::new(), None, None);
-    let mut octets = Vec::new();
-    for number in 1.. {
-        octets.clear();
-        let length = reader.by_ref().take(MAX_LINE).read_until(b'\n', &mut octets).map_err(io)?;
-        if length == 0 {
-            break;
-        }
-        if length as u64 == MAX_LINE {
-            return Err(wrong(number, format!("the line is longer than {MAX_LINE} octets")));
-        }
-        match (serde_json::from_slice(&octets), header.is_some()) {
-            (Ok(Line::Header(found)), false) => {
-                if found.schema != SCHEMA {
-                    return Err(ReadError::Schema { path: name, found: found.schema });
-                }
-                header = Some(*found);
-            }
-            (Ok(Line::Case(case)), true) if footer.is_none() => cases.push(*case),
-            (Ok(Line::Footer(found)), true) if footer.is_none() => footer = Some(found),
-            (Ok(_), _) => return Err(wrong(number, "the line is not where it belongs".to_owned())),
-            (Err(error), true) if octets.last() != Some(&b'\n') => {
-                damaged = Some(format!("line {number} was cut off after {length} octets ({error})"));
-                break;
-            }
-            (Err(error), _) => return Err(wrong(number, format!("the line is no line of a record ({error})"))),
-        }
-    }
-    let header = header.ok_or_else(|| wrong(1, "the first line is missing".to_owned()))?;
-    Ok(Run { header, cases, footer, damaged })
+    let mut reader = Reader::open(folder)?;
+    let cases = reader.by_ref().collect::<Result<_, _>>()?;
+    Ok(Run { header: reader.header, cases, footer: reader.footer, damaged: reader.damaged })
 }

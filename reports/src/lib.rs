@@ -1,15 +1,17 @@
 //! The run record and everything rendered from it: a report is a function of a record on disk.
 
+mod case_html;
 mod chart;
 pub mod decode;
 mod html;
 mod journal;
 mod junit;
 pub mod record;
+mod story;
 mod summary;
 mod text;
 
-pub use journal::{FILE, Journal, ReadError, Run, read};
+pub use journal::{FILE, Journal, ReadError, Reader, Run, read};
 pub use summary::{Summary, execution_name, verdict_name};
 pub use text::visible;
 

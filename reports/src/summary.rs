@@ -1,9 +1,10 @@
 //! `summary.json`: the run in a few numbers, and the exit code.
 
-use crate::journal::Run;
-use crate::record::{DutInfo, Execution, Verdict};
+use crate::journal::{ReadError, Reader, Run};
+use crate::record::{CaseRecord, DutInfo, Execution, Footer, Header, Verdict};
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// The run in a few numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -26,49 +27,65 @@ pub struct Summary {
     pub planned: usize,
     /// Cases left out because they do not apply.
     pub not_applicable: usize,
-    /// The run did not come to its end: cut off, interrupted, or fewer cases than planned.
+    /// The run did not come to its end: cut off, interrupted, or with fewer cases than planned or counted at the end.
     pub partial: bool,
 }
 
 impl Summary {
     /// Sums up a run.
     pub fn of(run: &Run) -> Summary {
-        let verdicts = [Verdict::NotApplicable, Verdict::Pass, Verdict::Remark, Verdict::Inconclusive, Verdict::Fail]
-            .map(verdict_name);
-        let executions = [
-            Execution::Ok,
-            Execution::Timeout,
-            Execution::DutError,
-            Execution::RigError,
-            Execution::ToolError,
-            Execution::Aborted,
-        ];
-        let machine = if run.header.dut.role == "master" { 1..=14 } else { 20..=31 };
-        let mut summary = Summary {
-            cases: run.cases.len(),
-            verdicts: verdicts.iter().map(|name| ((*name).to_owned(), 0)).collect(),
-            execution: executions.map(execution_name).iter().map(|name| ((*name).to_owned(), 0)).collect(),
+        let mut summary = Summary::begin(&run.header);
+        run.cases.iter().for_each(|case| summary.add(case));
+        summary.end(run.footer.as_ref(), run.damaged.is_some());
+        summary
+    }
+
+    /// Sums up the journal of a folder, one case at a time: flat in memory however long the run was.
+    ///
+    /// # Errors
+    /// [`ReadError`].
+    pub fn read(folder: &Path) -> Result<Summary, ReadError> {
+        let mut reader = Reader::open(folder)?;
+        let mut summary = Summary::begin(reader.header());
+        for case in reader.by_ref() {
+            summary.add(&case?);
+        }
+        summary.end(reader.footer(), reader.damaged().is_some());
+        Ok(summary)
+    }
+
+    fn begin(header: &Header) -> Summary {
+        let machine = if header.dut.role == "master" { 1..=14 } else { 20..=31 };
+        Summary {
+            cases: 0,
+            verdicts: VERDICTS.map(|verdict| (verdict_name(verdict).to_owned(), 0)).into(),
+            execution: EXECUTIONS.map(|execution| (execution_name(execution).to_owned(), 0)).into(),
             transitions: machine.map(|number| (format!("T{number}"), 0)).collect(),
             tolerances: BTreeMap::new(),
-            seed: run.header.seed,
-            dut: run.header.dut.clone(),
-            planned: run.header.planned,
-            not_applicable: run.header.not_applicable.len(),
-            partial: run.footer.as_ref().is_none_or(|footer| footer.interrupted)
-                || run.damaged.is_some()
-                || run.cases.len() < run.header.planned,
-        };
-        for case in &run.cases {
-            *summary.verdicts.entry(verdict_name(case.verdict).to_owned()).or_default() += 1;
-            *summary.execution.entry(execution_name(case.execution).to_owned()).or_default() += 1;
-            for (transition, count) in &case.transitions {
-                *summary.transitions.entry(transition.clone()).or_default() += count;
-            }
-            for tolerance in case.tolerances.keys() {
-                *summary.tolerances.entry(tolerance.clone()).or_default() += 1;
-            }
+            seed: header.seed,
+            dut: header.dut.clone(),
+            planned: header.planned,
+            not_applicable: header.not_applicable.len(),
+            partial: true,
         }
-        summary
+    }
+
+    fn add(&mut self, case: &CaseRecord) {
+        self.cases += 1;
+        *self.verdicts.entry(verdict_name(case.verdict).to_owned()).or_default() += 1;
+        *self.execution.entry(execution_name(case.execution).to_owned()).or_default() += 1;
+        for (transition, count) in &case.transitions {
+            let sum = self.transitions.entry(transition.clone()).or_default();
+            *sum = sum.saturating_add(*count);
+        }
+        for tolerance in case.tolerances.keys() {
+            *self.tolerances.entry(tolerance.clone()).or_default() += 1;
+        }
+    }
+
+    fn end(&mut self, footer: Option<&Footer>, damaged: bool) {
+        let complete = footer.is_some_and(|footer| !footer.interrupted && footer.cases == self.cases);
+        self.partial = damaged || !complete || self.cases < self.planned;
     }
 
     /// Cases with this verdict.
@@ -80,15 +97,15 @@ impl Summary {
     ///
     /// | code | when, the first that holds |
     /// |---|---|
-    /// | 4 | nothing ran: no case is recorded |
+    /// | 4 | nothing ran: no case is recorded, or none that applies |
     /// | 1 | a case failed |
     /// | 3 | a case was not executed as meant, or the run did not come to its end |
-    /// | 5 | a case is inconclusive |
-    /// | 0 | conformant |
+    /// | 5 | a case is inconclusive, also beside passes: a gate must not be green while something is open |
+    /// | 0 | conformant: passes and remarks |
     pub fn exit_code(&self) -> u8 {
         let executed = self.execution.get(execution_name(Execution::Ok)).copied().unwrap_or(0);
         match () {
-            () if self.cases == 0 && !self.partial => 4,
+            () if self.cases == self.count(Verdict::NotApplicable) => 4,
             () if self.count(Verdict::Fail) > 0 => 1,
             () if self.partial || executed < self.cases => 3,
             () if self.count(Verdict::Inconclusive) > 0 => 5,
@@ -96,6 +113,18 @@ impl Summary {
         }
     }
 }
+
+const VERDICTS: [Verdict; 5] =
+    [Verdict::NotApplicable, Verdict::Pass, Verdict::Remark, Verdict::Inconclusive, Verdict::Fail];
+
+const EXECUTIONS: [Execution; 6] = [
+    Execution::Ok,
+    Execution::Timeout,
+    Execution::DutError,
+    Execution::RigError,
+    Execution::ToolError,
+    Execution::Aborted,
+];
 
 /// A verdict as written in records.
 pub const fn verdict_name(verdict: Verdict) -> &'static str {

@@ -10,13 +10,28 @@ pub fn visible(text: &str) -> String {
     out
 }
 
+/// At most so many characters on one line, with a sign when some were left out, none of them hostile.
+pub fn short(text: &str, most: usize) -> String {
+    let line: String = text.chars().take(most + 1).map(|c| if c == '\n' { ' ' } else { c }).collect();
+    let line = visible(&line);
+    if line.chars().count() <= most {
+        return line;
+    }
+    line.chars().take(most.saturating_sub(1)).chain(['…']).collect()
+}
+
 const fn is_hostile(c: char) -> bool {
     match c {
         '\n' | '\t' => false,
         // Controls, among them the escape that begins terminal sequences.
         '\0'..='\u{1F}' | '\u{7F}'..='\u{9F}' => true,
         // Invisible, or reordering what follows.
-        '\u{200B}'..='\u{200F}' | '\u{2028}'..='\u{202E}' | '\u{2060}'..='\u{206F}' | '\u{FEFF}' => true,
+        '\u{061C}'
+        | '\u{200B}'..='\u{200F}'
+        | '\u{2028}'..='\u{202E}'
+        | '\u{2060}'..='\u{206F}'
+        | '\u{FEFF}'
+        | '\u{E0000}'..='\u{E007F}' => true,
         // No characters at all.
         '\u{FFFE}' | '\u{FFFF}' => true,
         _ => false,

@@ -1,0 +1,117 @@
+//! One case in `report.html`: its reasons, the SPDUs around the finding, its steps and its sequence chart, within the room
+//! the page has.
+
+use crate::chart::chart;
+use crate::decode::Side;
+use crate::html::word;
+use crate::record::{CaseRecord, Reason, RequirementRef};
+use crate::story::around;
+use crate::summary::{execution_name, verdict_name};
+use crate::text::{short, visible as clean};
+use maud::{Markup, html};
+use std::cell::Cell;
+
+/// Characters of one text, say an observation.
+const TEXT: usize = 600;
+/// Steps listed, and checks of one step.
+const LISTED: usize = 80;
+
+/// What is left of the page, and what is the same for all cases.
+pub struct Room {
+    left: Cell<usize>,
+    side: Side,
+}
+
+impl Room {
+    /// A page without room yet, about a DUT of this role.
+    pub fn new(role: &str) -> Room {
+        Room { left: Cell::new(0), side: Side::of(role) }
+    }
+
+    /// So many octets more.
+    pub fn add(&self, octets: usize) {
+        self.left.set(self.left.get().saturating_add(octets));
+    }
+
+    /// The markup when there is room for it.
+    pub fn take(&self, markup: Markup) -> Option<Markup> {
+        self.left.set(self.left.get().checked_sub(markup.0.len())?);
+        Some(markup)
+    }
+}
+
+/// A case that needs a reader; `None` when there is no room left even without steps and chart.
+pub fn full(case: &CaseRecord, room: &Room) -> Option<Markup> {
+    let (said, class) = word(case);
+    let around = around(case, room.side);
+    let told = room.take(html! {
+        h3 { span class=(format!("word {class}")) { (said) } " " (clean(&case.id)) ": " (short(&case.title, TEXT)) }
+        p.soft { code { (short(&case.key, TEXT)) } " · " (clean(&case.place)) " · execution: " (execution_name(case.execution)) }
+        p { "Judges " (requirements(case)) }
+        @for reason in &case.reasons { (why(reason, case)) }
+        @for (id, text) in &case.tolerances { p.remark { span.word { "● " (clean(id)) } " " (short(text, TEXT)) } }
+        @if !around.is_empty() { pre tabindex="0" { (clean(&around)) } }
+        p { "Run it again:" }
+        pre.replay tabindex="0" { (clean(&case.replay)) }
+    })?;
+    Some(html! {
+        section.case {
+            (told)
+            details {
+                summary { "Steps and sequence chart" }
+                (body(case, room).unwrap_or_else(|| html! { p.soft { "Left out to keep this page small; all of it is in run.jsonl." } }))
+            }
+        }
+    })
+}
+
+/// `R-11.5.4.1-01 (clause 11.5.4.1, shall)`, all of them.
+pub fn requirements(case: &CaseRecord) -> String {
+    let of = |record: &RequirementRef| clean(&format!("{} (clause {}, {})", record.id, record.clause, record.level));
+    case.requirements.iter().map(of).collect::<Vec<_>>().join(", ")
+}
+
+/// Steps with their checks, and the chart; `None` when there is no room for them.
+pub fn body(case: &CaseRecord, room: &Room) -> Option<Markup> {
+    room.take(html! {
+        (steps(case))
+        @if !case.trace.is_empty() { (chart(case, room.side)) }
+    })
+}
+
+fn why(reason: &Reason, case: &CaseRecord) -> Markup {
+    html! {
+        dl.why {
+            dt { (verdict_name(reason.verdict)) }
+            dd { (clean(&reason.kind)) @if !reason.clause.is_empty() { " · clause " (clean(&reason.clause)) } }
+            dt { "at step " (reason.step) }
+            dd { @if let Some(step) = case.steps.get(reason.step) { code { (short(&step.text, TEXT)) } } }
+            dt { "expected" } dd { (short(&reason.expected, TEXT)) }
+            dt { "observed" } dd { span.word { (short(&reason.observed, TEXT)) } }
+        }
+    }
+}
+
+fn steps(case: &CaseRecord) -> Markup {
+    html! {
+        ol.steps start="0" {
+            @for step in case.steps.iter().take(LISTED) {
+                li {
+                    code { (short(&step.text, TEXT)) }
+                    @if !step.executed { " " span.soft { "(not reached)" } }
+                    @if !step.checks.is_empty() {
+                        ul.checks {
+                            @for check in step.checks.iter().take(LISTED) {
+                                @if check.met { li { "✓ " (clean(&check.key)) " " (short(&check.observed, TEXT)) } }
+                                @else {
+                                    li.fail { "✗ " (clean(&check.key)) " " (short(&check.observed, TEXT)) ", not " (short(&check.expected, TEXT)) }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        @if case.steps.len() > LISTED { p.soft { (case.steps.len() - LISTED) " more steps are in run.jsonl." } }
+    }
+}

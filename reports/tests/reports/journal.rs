@@ -1,0 +1,89 @@
+//! Journals that are whole, cut off, damaged or foreign.
+
+use crate::common::*;
+use fsct_reports::{FILE, Reader, Run, Summary, read};
+use rstest::rstest;
+
+#[test]
+fn a_journal_reads_back_as_it_was_written() {
+    let run = everything();
+    assert_eq!(read(&Folder::with("round", &run).0).expect("it is sound"), run);
+}
+
+#[test]
+fn a_journal_cut_off_anywhere_in_its_last_line_keeps_all_before_it() {
+    let run = run(vec![passed(1), failed(2)]);
+    let folder = Folder::with("cut", &Run { footer: None, ..run.clone() });
+    let whole = folder.text(FILE);
+    let last = whole.trim_end().rfind('\n').expect("three lines") + 1;
+    for cut in (last + 1..whole.len() - 1).step_by(97) {
+        std::fs::write(folder.0.join(FILE), &whole[..cut]).expect("it can be written");
+        let back = read(&folder.0).expect("all but the last line is sound");
+        assert_eq!(back.cases, run.cases[..1]);
+        assert!(back.damaged.is_some() && Summary::of(&back).partial);
+    }
+}
+
+#[rstest]
+#[case::empty("", "the first line is missing")]
+#[case::no_json("hello\n", "no line of a record")]
+#[case::other_schema(r#"{"header":{"schema":"fsct-run/9","fsct":"9","seed":1,"dut":{"url":"","role":"device","vendor":"","product":"","version":"","pcos":[],"clock":"virtual","resolution_ns":1,"uncertainty_ns":0,"offers":[]},"profile":"","planned":0,"not_applicable":[],"tolerances":{}}}"#, "fsct-run/9")]
+#[case::cut_in_its_header(r#"{"header":{"schema":"fsct-ru"#, "run.jsonl:1:")]
+#[case::no_header(r#"{"footer":{"cases":0,"interrupted":false}}"#, "not where it belongs")]
+#[case::another_shape(r#"{"header":{"schema":"fsct-run/2","who":"knows"}}"#, "schema `fsct-run/2` is not known")]
+fn a_file_that_is_no_record_gets_one_clear_sentence(#[case] text: &str, #[case] says: &str) {
+    let folder = Folder::new(&format!("bad-{}-{}", text.len(), says.len()));
+    std::fs::write(folder.0.join(FILE), text).expect("it can be written");
+    let error = read(&folder.0).expect_err("it is no record").to_string();
+    assert!(error.contains(says), "{error}");
+}
+
+#[test]
+fn a_bad_line_in_the_middle_is_named() {
+    let folder = Folder::with("middle", &everything());
+    let text = folder.text(FILE).replacen("\"case\"", "\"cake\"", 1);
+    std::fs::write(folder.0.join(FILE), text).expect("it can be written");
+    assert!(read(&folder.0).expect_err("line 2 is bad").to_string().contains("run.jsonl:2:"));
+}
+
+#[test]
+fn nothing_may_follow_the_footer() {
+    let folder = Folder::with("behind", &run(vec![passed(1)]));
+    let text = folder.text(FILE);
+    let case = text.lines().nth(1).expect("a case").to_owned();
+    std::fs::write(folder.0.join(FILE), format!("{text}{case}\n")).expect("it can be written");
+    let error = read(&folder.0).expect_err("a case after the footer").to_string();
+    assert!(error.contains("run.jsonl:4: the line is not where it belongs"), "{error}");
+}
+
+#[test]
+fn a_line_without_end_is_refused_before_it_fills_the_memory() {
+    let folder = Folder::with("endless", &Run { footer: None, ..run(vec![passed(1)]) });
+    let file = std::fs::OpenOptions::new().write(true).open(folder.0.join(FILE)).expect("it is there");
+    file.set_len(80 << 20).expect("it can grow");
+    let error = read(&folder.0).expect_err("80 MiB in one line").to_string();
+    assert!(error.contains("run.jsonl:3: the line is longer than"), "{error}");
+}
+
+#[test]
+fn cases_are_read_one_at_a_time_and_the_footer_is_known_at_the_end() {
+    let run = everything();
+    let mut reader = Reader::open(&Folder::with("stream", &run).0).expect("it is sound");
+    assert_eq!(*reader.header(), run.header);
+    for case in &run.cases {
+        assert_eq!(reader.footer(), None);
+        assert_eq!(reader.next().expect("one more").expect("it is sound"), *case);
+    }
+    assert!(reader.next().is_none() && reader.next().is_none());
+    assert_eq!(reader.footer(), run.footer.as_ref());
+}
+
+#[test]
+fn reading_ends_at_the_first_error() {
+    let folder = Folder::with("fused", &everything());
+    let text = folder.text(FILE).replacen("\"case\"", "\"cake\"", 1);
+    std::fs::write(folder.0.join(FILE), text).expect("it can be written");
+    let mut reader = Reader::open(&folder.0).expect("the header is sound");
+    assert!(reader.next().is_some_and(|case| case.is_err()));
+    assert!(reader.next().is_none());
+}

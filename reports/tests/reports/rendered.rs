@@ -1,0 +1,197 @@
+//! JUnit and HTML: what they look like, hostile text, size.
+
+use crate::common::*;
+use fsct_reports::record::*;
+use fsct_reports::{Run, render};
+use insta::assert_snapshot;
+use rstest::rstest;
+
+#[test]
+fn junit_and_summary_look_like_this() {
+    let folder = Folder::with("look", &everything());
+    render(&folder.0).expect("the record is sound");
+    assert_snapshot!("junit", folder.text("junit.xml"));
+    assert_snapshot!("summary", folder.text("summary.json"));
+}
+
+#[test]
+fn the_sequence_chart_looks_like_this() {
+    let folder = Folder::with("chart", &run(vec![failed(2)]));
+    render(&folder.0).expect("the record is sound");
+    assert_snapshot!("chart", svg(&folder.text("report.html")).replace("><", ">\n<"));
+}
+
+#[test]
+fn text_from_a_dut_is_escaped_wherever_it_is_shown() {
+    let mut run = run(vec![hostile(1)]);
+    run.header.dut.product = HOSTILE.into();
+    run.header.dut.vendor = HOSTILE.into();
+    run.header.dut.offers = vec![HOSTILE.into()];
+    run.header.profile = HOSTILE.into();
+    run.header.not_applicable.push((HOSTILE.into(), HOSTILE.into()));
+    let folder = Folder::with("hostile", &run);
+    render(&folder.0).expect("the record is sound");
+    for name in ["report.html", "junit.xml"] {
+        let text = folder.text(name);
+        for hostile in ["<script", "\u{0}", "\u{1b}", "\u{fffe}", "\u{202e}"] {
+            assert!(!text.contains(hostile), "{name} carries {hostile:?}");
+        }
+        assert!(text.contains("&lt;script&gt;alert(1)") && text.contains("\\u{202e}"), "{name} does not show it");
+    }
+    assert!(!folder.text("junit.xml").contains("]]>"));
+}
+
+#[test]
+fn the_page_loads_nothing_and_runs_nothing() {
+    let folder = Folder::with("page", &everything());
+    render(&folder.0).expect("the record is sound");
+    let html = folder.text("report.html");
+    for word in ["<script", "http://", "https://", "<link", "<img", "url("] {
+        assert!(!html.contains(word), "{word}");
+    }
+}
+
+#[test]
+fn a_name_of_ten_thousand_characters_does_not_fill_the_page() {
+    let mut run = run(vec![passed(1)]);
+    let small = Folder::with("small", &run);
+    render(&small.0).expect("the record is sound");
+    run.header.dut.product = "x".repeat(10_000);
+    run.header.dut.version = "y".repeat(10_000);
+    let folder = Folder::with("name", &run);
+    render(&folder.0).expect("the record is sound");
+    assert!(folder.text("report.html").len() < small.text("report.html").len() + 2_000);
+}
+
+/// The part of a page that is the first chart.
+fn svg(html: &str) -> &str {
+    let (from, to) = (html.find("<svg").expect("a chart"), html.find("</svg>").expect("its end"));
+    &html[from..to + 6]
+}
+
+fn page(name: &str, run: &Run) -> String {
+    let folder = Folder::with(name, run);
+    render(&folder.0).expect("the record is sound");
+    folder.text("report.html")
+}
+
+#[test]
+fn a_long_chart_keeps_its_beginning_and_the_finding_and_says_what_is_left_out() {
+    let mut case = long(1, 500);
+    case.elided = 1_000;
+    let html = page("long", &run(vec![case]));
+    let chart = svg(&html);
+    let tips = chart.matches("-4v8z").count();
+    assert!((100..=120).contains(&tips), "{tips}");
+    assert!(chart.contains("> lost<") || chart.contains(">lost<"));
+    assert!(chart.contains("x 12") && chart.contains(">finding<"));
+    assert!(chart.contains("1442 lines left out"), "{chart}");
+}
+
+#[test]
+fn the_finding_stays_in_sight_when_a_long_trace_goes_on_behind_it() {
+    let mut case = long(1, 500);
+    case.reasons[0].entry = Some(250);
+    let html = page("behind-it", &run(vec![case]));
+    let chart = svg(&html);
+    assert!(chart.contains(">finding<") && chart.contains("250.000 ms") && !chart.contains("499.000 ms"));
+    assert_eq!(chart.matches("lines left out").count(), 2);
+}
+
+#[test]
+fn an_fs_master_under_test_stands_on_the_left_and_is_decoded_as_one() {
+    let mut run = run(vec![passed(1)]);
+    run.header.dut.role = "master".into();
+    run.cases[0].transitions = [("T1".into(), 1)].into();
+    run.cases[0].trace[1] = exchange(1, "A5FEE46AF6", "0001029D56", &["T1"], "");
+    let html = page("master", &run);
+    let chart = svg(&html);
+    assert!(chart.contains("FS-Master (DUT)") && chart.contains("FS-Device (tester)"));
+    assert!(chart.contains("DCount_i 7 SDset 1 PD") && chart.contains("MCount 0 setSD 1 SD"));
+    assert!(html.contains("1 of 14 were taken"));
+}
+
+#[test]
+fn the_page_says_what_failed_where_and_how_to_run_it_again() {
+    let html = page("tells", &everything());
+    for text in [
+        "Evidence for an assessment, not a certificate",
+        "Not conformant",
+        "R-11.5.4.1-01 (clause 11.5.4.1, shall)",
+        "11.5.3 Table 40 T25",
+        "DCommErr 1 (after T24 T25 T26)",
+        "CRC wrong: 5726, computed 5727",
+        "fsct run --seed 7 --filter 'FSD-0001[..]'",
+        "tolerated: T29 read sequentially",
+        "the DUT does not serve `app`",
+        "</span> never",
+        "2 of 12 were taken",
+    ] {
+        assert!(html.contains(text), "{text}");
+    }
+    let at = |title: &str| html.find(title).unwrap_or_else(|| panic!("{title}"));
+    assert!(at("Failures (1)") < at("Not executed as meant (1)"));
+    assert!(at("Not executed as meant (1)") < at("Inconclusive (1)") && at("Inconclusive (1)") < at("Remarks (1)"));
+    assert!(at("Remarks (1)") < at("All cases"));
+}
+
+#[test]
+fn cases_never_tried_take_one_line_a_reason() {
+    let mut cases: Vec<CaseRecord> = (2..40).map(|number| lost(number, Execution::Aborted)).collect();
+    cases.iter_mut().for_each(|case| case.trace.clear());
+    cases.push(lost(1, Execution::Timeout));
+    let html = page("not-begun", &run(cases));
+    assert!(html.contains("Not begun (38)") && html.contains("Not executed as meant (1)"));
+    assert_eq!(html.matches("<section class=\"case\">").count(), 1);
+}
+
+#[test]
+fn a_partial_record_says_so() {
+    let html = page("partial", &Run { footer: None, header: header(3), ..run(vec![passed(1)]) });
+    assert!(html.contains("This record is partial") && html.contains("1 of 3 cases are in it"));
+}
+
+#[test]
+fn test_cases_of_junit_are_unique_and_none_is_dropped() {
+    let mut odd = passed(2);
+    odd.suite = "not-applicable".into();
+    let folder = Folder::with("unique", &run(vec![passed(1), passed(1), odd]));
+    render(&folder.0).expect("the record is sound");
+    let xml = folder.text("junit.xml");
+    assert_eq!(xml.matches("<testcase ").count(), 4);
+    assert!(xml.contains("pd=1] #2\""));
+}
+
+#[test]
+fn positions_a_record_cannot_mean_are_shown_without_harm() {
+    let mut case = failed(1);
+    case.reasons[0].entry = Some(usize::MAX);
+    case.reasons[0].step = usize::MAX;
+    case.steps[0].entries = (usize::MAX, 0);
+    case.trace[0].at = u64::MAX;
+    case.elided = u64::MAX;
+    case.duration_ns = u64::MAX;
+    case.transitions.insert("T22".into(), u64::MAX);
+    case.variant = VariantInfo { mode: "crc99".into(), pd_out: 255, pd_in: 255, ..VariantInfo::default() };
+    page("odd", &run(vec![case.clone(), case]));
+}
+
+#[rstest]
+#[case::short_traces_of_400_ids(25, 3)]
+#[case::long_traces_of_400_ids(25, 200)]
+#[case::long_traces_each_an_id(1, 60)]
+fn ten_thousand_cases_are_less_than_five_megabytes(#[case] points: usize, #[case] entries: u64) {
+    let cases = (0..10_000)
+        .map(|number| {
+            // One case in fifty failed.
+            let mut case = if number % 50 == 7 { long(number / points, entries) } else { passed(number / points) };
+            case.trace = if entries > 3 { long(1, entries).trace } else { case.trace };
+            case.key = format!("{}[point={number}]", case.id);
+            case.sweep.push(("point".into(), number.to_string()));
+            case
+        })
+        .collect();
+    let html = page(&format!("large-{points}-{entries}"), &run(cases));
+    assert!(html.len() < 5_000_000, "{} octets", html.len());
+    assert!(html.contains("FSD-0000") && html.contains("Failures (200)"));
+}
