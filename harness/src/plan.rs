@@ -146,7 +146,7 @@ pub fn unreached(role: Role) -> Description {
         offers: crate::library::EVERYTHING.to_vec(),
         clock: fsct_adapters::Clock { kind: fsct_adapters::ClockKind::Virtual, resolution_ns: 1, uncertainty_ns: 0 },
         vendor: String::new(),
-        product: "not reached".to_owned(),
+        product: String::new(),
         version: String::new(),
     }
 }

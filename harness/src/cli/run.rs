@@ -8,7 +8,7 @@ use crate::problem::suggestion;
 use crate::profile::Profile;
 use crate::yaml;
 use fsct_protocol::Edition;
-use fsct_reports::record::{CaseRecord, Execution, Footer, Header, SCHEMA, Verdict};
+use fsct_reports::record::{CaseRecord, DutInfo, Execution, Footer, Header, SCHEMA, Verdict};
 use fsct_reports::{Journal, Summary, visible};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::collections::BTreeMap;
@@ -109,7 +109,11 @@ fn execute(args: &Args) -> Result<u8, u8> {
         schema: SCHEMA.to_owned(),
         fsct: env!("CARGO_PKG_VERSION").to_owned(),
         seed: args.seed,
-        dut: dut_info(&args.dut, &description),
+        dut: match &first {
+            Ok(_) => dut_info(&args.dut, &description),
+            // Of a DUT that was not reached nothing is known but where it should be.
+            Err(_) => DutInfo { url: args.dut.clone(), role: profile.role.to_string(), ..DutInfo::default() },
+        },
         profile: profile.name.clone(),
         planned: plan.cases.len(),
         not_applicable: plan.not_applicable.clone(),
