@@ -39,7 +39,7 @@ pub fn render(run: &Run) -> String {
             }
             body {
                 main {
-                    h1 { "IO-Link Safety conformance: " (short(&dut.product, NAME)) }
+                    h1 { "IO-Link Safety conformance" @if !dut.product.is_empty() { ": " (short(&dut.product, NAME)) } }
                     p.soft { "Evidence for an assessment, not a certificate. Made by fsct " (short(&run.header.fsct, NAME)) " from run.jsonl." }
                     (banner(&summary))
                     (incomplete(run, &summary))
@@ -117,11 +117,16 @@ fn facts(run: &Run, summary: &Summary) -> Markup {
     let own_words: Vec<String> = own_words.into_iter().filter(|text| !text.is_empty()).collect();
     html! {
         dl {
-            dt { "Device under test" } dd { (own_words.join(" · ")) span.soft { " in its own words" } }
+            dt { "Device under test" }
+            // A DUT that was reached names its clock.
+            @if dut.clock.is_empty() { dd { "not reached: nothing is known of it" } }
+            @else { dd { (own_words.join(" · ")) span.soft { " in its own words" } } }
             dt { "Address" } dd { code { (short(&dut.url, 4 * NAME)) } }
             dt { "Role" } dd { (name(&dut.role)) }
-            dt { "Served" } dd { (short(&dut.pcos.join(", "), 4 * NAME)) }
-            dt { "Clock" } dd { (name(&dut.clock)) ", resolution " (dut.resolution_ns) " ns, uncertainty ± " (dut.uncertainty_ns) " ns" }
+            @if !dut.clock.is_empty() {
+                dt { "Served" } dd { (short(&dut.pcos.join(", "), 4 * NAME)) }
+                dt { "Clock" } dd { (name(&dut.clock)) ", resolution " (dut.resolution_ns) " ns, uncertainty ± " (dut.uncertainty_ns) " ns" }
+            }
             @if !dut.offers.is_empty() {
                 dt { "Offers" } dd { @for offer in dut.offers.iter().take(LISTED) { (name(offer)) br; } }
             }
