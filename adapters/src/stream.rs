@@ -2,7 +2,8 @@
 //!
 //! Two threads stand between the stream and its user: one writes requests, one reads pieces of at most 64 KiB into a
 //! short queue. So neither a DUT that does not read nor one that does not stop writing can hold up the user, and what a
-//! hostile DUT can make this program remember is bounded.
+//! hostile DUT can make this program remember is bounded. A short request while none is unanswered cannot block, for
+//! the stream is empty then: it is written at once, without the detour.
 
 mod answers;
 
@@ -12,8 +13,9 @@ use crate::{Description, Dut, DutError, MAX_BATCH, Observation, Stimulus};
 use answers::Answers;
 pub use answers::{FLOOD_PER_STIMULUS, FLOOD_SLACK};
 use std::collections::VecDeque;
-use std::io::{ErrorKind, Read, Write};
+use std::io::{self, ErrorKind, Read, Write};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, channel, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -24,6 +26,8 @@ pub const REPLY_TIMEOUT: Duration = Duration::from_secs(2);
 const MAX_REQUESTS: usize = 8;
 /// Octets read at once.
 const CHUNK: usize = 1 << 16;
+/// A request of so many octets is written at once when nothing is unanswered: any stream takes it whole.
+const SHORT: usize = 2_048;
 /// Pieces waiting between the reading thread and the user.
 const CHUNKS: usize = 4;
 
@@ -34,10 +38,14 @@ pub trait Peer: Send {
     fn close(&mut self) -> String;
 }
 
+type Writer = Arc<Mutex<dyn Write + Send>>;
+
 /// A DUT at the other end of a stream.
 pub struct StreamDut {
     /// To the writing thread; `None` when the connection is ended.
     requests: Option<Sender<Vec<u8>>>,
+    /// The stream for writing, shared with that thread; `None` when the connection is ended.
+    writer: Option<Writer>,
     chunks: Receiver<Vec<u8>>,
     peer: Box<dyn Peer>,
     decoder: Decoder,
@@ -67,10 +75,13 @@ impl StreamDut {
     ) -> StreamDut {
         let (requests, to_write) = channel();
         let (to_user, chunks) = sync_channel(CHUNKS);
-        thread::spawn(move || write_all(writer, &to_write));
+        let writer: Writer = Arc::new(Mutex::new(writer));
+        let shared = writer.clone();
+        thread::spawn(move || write_all(&shared, &to_write));
         thread::spawn(move || read_all(reader, &to_user));
         StreamDut {
             requests: Some(requests),
+            writer: Some(writer),
             chunks,
             peer,
             decoder: Decoder::new(),
@@ -96,17 +107,25 @@ impl StreamDut {
 
     fn hang_up(&mut self) -> String {
         self.requests = None;
+        self.writer = None;
         self.peer.close()
     }
 
-    fn send(&mut self, kind: u8, payload: &[u8]) -> Result<u8, DutError> {
+    /// Sends a request; `alone`: none before it is unanswered.
+    fn send(&mut self, kind: u8, payload: &[u8], alone: bool) -> Result<u8, DutError> {
         let sequence = self.sequence;
         self.sequence = sequence.wrapping_add(1);
         let octets =
             frame::encode(kind, sequence, payload).ok_or_else(|| too_long(payload.len(), frame::MAX_PAYLOAD))?;
-        // A writing thread that has ended shows as an end of the other direction, or as silence.
-        if let Some(requests) = &self.requests {
-            let _ = requests.send(octets);
+        // A stream that takes no more shows as an end of the other direction, or as silence.
+        match (&self.writer, &self.requests) {
+            (Some(writer), _) if alone && octets.len() <= SHORT => {
+                let _ = write(writer, &octets);
+            }
+            (_, Some(requests)) => {
+                let _ = requests.send(octets);
+            }
+            _ => {}
         }
         Ok(sequence)
     }
@@ -162,7 +181,7 @@ impl StreamDut {
     }
 
     fn describe(&mut self) -> Result<Description, DutError> {
-        let sequence = self.send(message::HELLO, &Hello::OURS.pack())?;
+        let sequence = self.send(message::HELLO, &Hello::OURS.pack(), true)?;
         let payload = self.answer(message::DESCRIPTION, sequence)?;
         match message::unpack_description(&payload).map_err(malformed)? {
             Described::Foreign(theirs) => Err(DutError::Version { theirs, ours: message::VERSION }),
@@ -183,7 +202,7 @@ impl StreamDut {
                 && let Some(rest) = stimuli.get(sent..)
                 && !rest.is_empty()
             {
-                let request = self.request(rest, sent)?;
+                let request = self.request(rest, sent, pending.is_empty())?;
                 sent += request.count;
                 pending.push_back(request);
             }
@@ -192,10 +211,10 @@ impl StreamDut {
         }
     }
 
-    fn request(&mut self, rest: &[Stimulus], first: usize) -> Result<Pending, DutError> {
+    fn request(&mut self, rest: &[Stimulus], first: usize, alone: bool) -> Result<Pending, DutError> {
         let mut payload = std::mem::take(&mut self.payload);
         let count = message::pack_apply(rest, self.limits.payload, message::MAX_STIMULI, &mut payload);
-        let sequence = self.send(message::APPLY, &payload);
+        let sequence = self.send(message::APPLY, &payload, alone);
         self.payload = payload;
         match count {
             0 => Err(DutError::Contract {
@@ -259,9 +278,15 @@ fn too_long(found: usize, limit: usize) -> DutError {
     DutError::Contract { what: format!("a message of {found} octets does not fit into {limit}") }
 }
 
-fn write_all(mut writer: impl Write, requests: &Receiver<Vec<u8>>) {
+fn write(writer: &Mutex<dyn Write + Send>, octets: &[u8]) -> io::Result<()> {
+    let mut writer = writer.lock().unwrap_or_else(PoisonError::into_inner);
+    writer.write_all(octets)?;
+    writer.flush()
+}
+
+fn write_all(writer: &Mutex<dyn Write + Send>, requests: &Receiver<Vec<u8>>) {
     while let Ok(octets) = requests.recv() {
-        if writer.write_all(&octets).and_then(|()| writer.flush()).is_err() {
+        if write(writer, &octets).is_err() {
             return;
         }
     }
