@@ -49,6 +49,38 @@ fn presented_by_an_fs_device(#[case] hex: Option<&str>, #[case] says: &str) {
     assert_eq!(Side::Device.got(hex, &crc16(1)), says);
 }
 
+/// An SPDU of one octet of process data with a good signature, from its octets before the signature.
+fn signed(secured: [u8; 3]) -> String {
+    let [pd, port, octet] = secured;
+    format!("{pd:02X}{port:02X}{octet:02X}{:04X}", signature(ProtMode::Crc16, Reading::Preset, &secured))
+}
+
+#[rstest]
+#[case::none(0b000, "SDset 0 · DCommErr 0 · DTimeout 0 · CRC ok", "SDset 0")]
+#[case::sdset(0b100, "SDset 1 · DCommErr 0 · DTimeout 0 · CRC ok", "SDset 1")]
+#[case::dcommerr(0b010, "SDset 0 · DCommErr 1 · DTimeout 0 · CRC ok", "SDset 0 DCommErr")]
+#[case::dtimeout(0b001, "SDset 0 · DCommErr 0 · DTimeout 1 · CRC ok", "SDset 0 DTimeout")]
+#[case::all(0b111, "SDset 1 · DCommErr 1 · DTimeout 1 · CRC ok", "SDset 1 DCommErr DTimeout")]
+#[case::reserved(0b0_1000, "SDset 0 · DCommErr 0 · DTimeout 0 · reserved bits 00001000 · CRC ok", "SDset 0")]
+fn every_bit_of_the_status_octet_has_its_name(#[case] bits: u8, #[case] told: &str, #[case] label: &str) {
+    let hex = signed([0xA5, 0xFE, 4 << 5 | bits]);
+    let says = format!("PDin A5 · PortNum FE (=1 inverted) · DCount_i 4 · {told}");
+    assert_eq!(Side::Device.got(Some(&hex), &crc16(1)), says);
+    assert_eq!(Side::Device.got_label(Some(&hex), &crc16(1)), format!("DCount_i 4 {label} PD"));
+}
+
+#[rstest]
+#[case::none(0b00, "setSD 0 · ChFAckReq 0 · CRC ok", "setSD 0")]
+#[case::set_sd(0b10, "setSD 1 · ChFAckReq 0 · CRC ok", "setSD 1")]
+#[case::ch_f_ack_req(0b01, "setSD 0 · ChFAckReq 1 · CRC ok", "setSD 0 ChFAckReq")]
+#[case::reserved(0b1_0000, "setSD 0 · ChFAckReq 0 · reserved bits 00010000 · CRC ok", "setSD 0")]
+fn every_bit_of_the_control_octet_has_its_name(#[case] bits: u8, #[case] told: &str, #[case] label: &str) {
+    let hex = signed([0x5A, 0x01, 3 << 5 | bits]);
+    let says = format!("PDout 5A · PortNum 1 · MCount 3 · {told}");
+    assert_eq!(Side::Device.sent(Some(&hex), &crc16(1)), says);
+    assert_eq!(Side::Device.sent_label(Some(&hex), &crc16(1)), format!("MCount 3 {label} PD"));
+}
+
 #[test]
 fn an_fs_master_presents_what_an_fs_device_is_sent() {
     assert_eq!(Side::Master.got(Some("5A01205727"), &crc16(1)), Side::Device.sent(Some("5A01205727"), &crc16(1)));

@@ -1,7 +1,8 @@
 //! Journals that are whole, cut off, damaged or foreign.
 
 use crate::common::*;
-use fsct_reports::{FILE, Reader, Run, Summary, read};
+use fsct_reports::record::Footer;
+use fsct_reports::{FILE, Journal, Reader, Run, Summary, read};
 use rstest::rstest;
 
 #[test]
@@ -11,16 +12,48 @@ fn a_journal_reads_back_as_it_was_written() {
 }
 
 #[test]
-fn a_journal_cut_off_anywhere_in_its_last_line_keeps_all_before_it() {
-    let run = run(vec![passed(1), failed(2)]);
-    let folder = Folder::with("cut", &Run { footer: None, ..run.clone() });
-    let whole = folder.text(FILE);
-    let last = whole.trim_end().rfind('\n').expect("three lines") + 1;
-    for cut in (last + 1..whole.len() - 1).step_by(97) {
+fn a_journal_begun_anew_holds_nothing_of_the_old_one_and_makes_its_folder() {
+    let parent = Folder::new("anew");
+    let folder = parent.0.join("runs").join("1");
+    for cases in [vec![passed(1), failed(2)], vec![passed(3)]] {
+        let mut journal = Journal::create(&folder).expect("it can be written");
+        journal.header(&header(cases.len())).expect("it can be written");
+        cases.iter().for_each(|case| journal.case(case).expect("it can be written"));
+    }
+    assert_eq!(read(&folder).expect("it is sound").cases, [passed(3)]);
+}
+
+#[test]
+fn what_is_recorded_can_be_read_while_the_journal_is_open() {
+    let folder = Folder::new("open");
+    let mut journal = Journal::create(&folder.0).expect("it can be written");
+    journal.header(&header(2)).expect("it can be written");
+    assert_eq!(read(&folder.0).expect("the header is there").cases, []);
+    journal.case(&passed(1)).expect("it can be written");
+    assert_eq!(read(&folder.0).expect("the case is there").cases, [passed(1)]);
+}
+
+/// Only the end of the line may be missing for the line to count: nothing of what it says is lost then.
+#[rstest]
+#[case::a_case(None)]
+#[case::the_footer(Some(Footer { cases: 2, interrupted: false }))]
+fn a_journal_cut_off_anywhere_in_its_last_line_keeps_all_before_it(#[case] footer: Option<Footer>) {
+    let footed = footer.is_some();
+    let mut last_case = hostile(2);
+    last_case.place = "é€😀".into();
+    let run = Run { footer, ..run(vec![passed(1), last_case]) };
+    let folder = Folder::with(if footed { "cut-footer" } else { "cut-case" }, &run);
+    let whole = std::fs::read(folder.0.join(FILE)).expect("it was written");
+    let (_, lines) = whole.split_last().expect("it ends with a line end");
+    let begin = lines.iter().rposition(|octet| *octet == b'\n').expect("three lines") + 1;
+    for cut in begin..=whole.len() {
         std::fs::write(folder.0.join(FILE), &whole[..cut]).expect("it can be written");
         let back = read(&folder.0).expect("all but the last line is sound");
-        assert_eq!(back.cases, run.cases[..1]);
-        assert!(back.damaged.is_some() && Summary::of(&back).partial);
+        let complete = cut >= lines.len();
+        let damage = format!("line {} was cut off after {} octets", if footed { 4 } else { 3 }, cut - begin);
+        assert_eq!(back.damaged, (cut > begin && !complete).then_some(damage));
+        assert_eq!(back.cases, run.cases[..if footed || complete { 2 } else { 1 }], "cut at {cut}");
+        assert_eq!(Summary::of(&back).partial, !(footed && complete), "cut at {cut}");
     }
 }
 
@@ -46,13 +79,15 @@ fn a_bad_line_in_the_middle_is_named() {
     assert!(read(&folder.0).expect_err("line 2 is bad").to_string().contains("run.jsonl:2:"));
 }
 
-#[test]
-fn nothing_may_follow_the_footer() {
-    let folder = Folder::with("behind", &run(vec![passed(1)]));
+#[rstest]
+#[case::a_case(1)]
+#[case::another_footer(2)]
+fn nothing_may_follow_the_footer(#[case] line: usize) {
+    let folder = Folder::with(&format!("behind-{line}"), &run(vec![passed(1)]));
     let text = folder.text(FILE);
-    let case = text.lines().nth(1).expect("a case").to_owned();
-    std::fs::write(folder.0.join(FILE), format!("{text}{case}\n")).expect("it can be written");
-    let error = read(&folder.0).expect_err("a case after the footer").to_string();
+    let again = text.lines().nth(line).expect("header, case, footer");
+    std::fs::write(folder.0.join(FILE), format!("{text}{again}\n")).expect("it can be written");
+    let error = read(&folder.0).expect_err("a line after the footer").to_string();
     assert!(error.contains("run.jsonl:4: the line is not where it belongs"), "{error}");
 }
 

@@ -2,7 +2,7 @@
 
 use crate::common::*;
 use fsct_reports::record::*;
-use fsct_reports::{Run, render};
+use fsct_reports::{Run, Summary, render, visible};
 use insta::assert_snapshot;
 use rstest::rstest;
 
@@ -160,6 +160,102 @@ fn test_cases_of_junit_are_unique_and_none_is_dropped() {
     let xml = folder.text("junit.xml");
     assert_eq!(xml.matches("<testcase ").count(), 4);
     assert!(xml.contains("pd=1] #2\""));
+}
+
+/// A gate that reads JUnit is green for a pass, a remark and what does not apply, and for nothing else.
+#[rstest]
+#[case::passed(Verdict::Pass, Execution::Ok, None)]
+#[case::remarked(Verdict::Remark, Execution::Ok, None)]
+#[case::left_out(Verdict::NotApplicable, Execution::Ok, Some("<skipped message="))]
+#[case::failed(Verdict::Fail, Execution::Ok, Some(r#"type="oracle/DCommErr">"#))]
+#[case::open(Verdict::Inconclusive, Execution::Ok, Some(r#"type="inconclusive">"#))]
+#[case::passed_till_it_was_lost(Verdict::Pass, Execution::RigError, Some(r#"type="rig-error">"#))]
+#[case::left_out_by_a_fault_of_the_tool(Verdict::NotApplicable, Execution::ToolError, Some(r#"type="tool-error">"#))]
+#[case::broke_the_contract(Verdict::Inconclusive, Execution::DutError, Some(r#"type="dut-error">"#))]
+#[case::failed_till_it_was_lost(Verdict::Fail, Execution::Timeout, Some(r#"type="timeout">"#))]
+fn junit_has_one_outcome_a_verdict(#[case] verdict: Verdict, #[case] execution: Execution, #[case] says: Option<&str>) {
+    let mut run = run(vec![CaseRecord { verdict, execution, ..failed(1) }]);
+    run.header.not_applicable.clear();
+    let folder = Folder::with(&format!("outcome-{verdict:?}-{execution:?}"), &run);
+    render(&folder.0).expect("the record is sound");
+    let xml = folder.text("junit.xml");
+    let skipped = usize::from((verdict, execution) == (Verdict::NotApplicable, Execution::Ok));
+    let failures = usize::from(verdict == Verdict::Fail);
+    let errors = usize::from(says.is_some()) - skipped - failures;
+    assert_eq!(xml.matches("<skipped").count(), skipped, "{xml}");
+    assert_eq!(xml.matches("<failure ").count(), failures, "{xml}");
+    assert_eq!(xml.matches("<error ").count(), errors, "{xml}");
+    assert!(says.is_none_or(|says| xml.contains(says)), "{xml}");
+}
+
+#[test]
+fn the_message_of_a_failure_is_short_and_its_body_has_it_all() {
+    let mut case = failed(1);
+    case.reasons[0].observed = "x".repeat(5_000);
+    case.reasons[0].kind = HOSTILE.into();
+    let folder = Folder::with("message", &run(vec![case]));
+    render(&folder.0).expect("the record is sound");
+    let xml = folder.text("junit.xml");
+    let (_, message) = xml.split_once("<failure message=\"").expect("a failure");
+    let (message, _) = message.split_once('"').expect("its end");
+    assert_eq!(message.chars().count(), 300);
+    assert!(message.ends_with("xxx…"));
+    assert!(xml.contains(&"x".repeat(5_000)));
+    assert!(xml.contains(r#"type="&lt;script"#) && !xml.contains(['\u{1b}', '\u{fffe}']));
+}
+
+#[test]
+fn a_failure_is_told_with_what_came_before_and_after_it() {
+    let mut case = long(1, 50);
+    case.reasons[0].entry = Some(20);
+    let folder = Folder::with("around", &run(vec![case]));
+    render(&folder.0).expect("the record is sound");
+    let xml = folder.text("junit.xml");
+    assert!(xml.contains("entries 13 to 24 of 50") && xml.contains("=&gt;      20.000 ms"), "{xml}");
+    assert!(xml.contains(" 12.000 ms") && xml.contains(" 23.000 ms"));
+    assert!(!xml.contains(" 11.000 ms") && !xml.contains(" 24.000 ms"));
+}
+
+#[test]
+fn reports_replace_those_of_before_and_leave_nothing_beside_them() {
+    let folder = Folder::with("again", &everything());
+    for _ in 0..2 {
+        assert_eq!(render(&folder.0).expect("the record is sound"), Summary::of(&everything()));
+    }
+    let entries = std::fs::read_dir(&folder.0).expect("it is there");
+    let mut names: Vec<_> = entries.map(|entry| entry.expect("it can be read").file_name()).collect();
+    names.sort();
+    assert_eq!(names, ["junit.xml", "report.html", "run.jsonl", "summary.json"]);
+}
+
+#[rstest]
+fn characters_that_hide_reorder_or_break_are_shown_as_escapes(
+    #[values(
+        '\0',
+        '\u{8}',
+        '\r',
+        '\u{1b}',
+        '\u{7f}',
+        '\u{9b}',
+        '\u{61c}',
+        '\u{200b}',
+        '\u{200f}',
+        '\u{2028}',
+        '\u{202e}',
+        '\u{2066}',
+        '\u{feff}',
+        '\u{e0001}',
+        '\u{fffe}',
+        '\u{ffff}'
+    )]
+    hostile: char,
+) {
+    assert_eq!(visible(&format!("a{hostile}b")), format!("a\\u{{{:x}}}b", u32::from(hostile)));
+}
+
+#[rstest]
+fn other_characters_stay(#[values('\n', '\t', ' ', '<', 'é', '€', '\u{fffd}', '\u{fffc}', '😀')] harmless: char) {
+    assert_eq!(visible(&harmless.to_string()), harmless.to_string());
 }
 
 #[test]

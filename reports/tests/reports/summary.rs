@@ -33,6 +33,13 @@ fn a_journal_is_summed_up_case_by_case_with_the_same_result() {
 }
 
 #[test]
+fn a_record_with_a_damaged_end_is_partial_whatever_its_footer_says() {
+    let whole = run(vec![passed(1)]);
+    assert!(!Summary::of(&whole).partial);
+    assert!(Summary::of(&Run { damaged: Some("line 4 was cut off after 3 octets".into()), ..whole }).partial);
+}
+
+#[test]
 fn an_fs_master_has_transitions_of_its_own() {
     let mut run = run(Vec::new());
     run.header.dut.role = "master".into();
