@@ -1,7 +1,14 @@
 //! The contract with a device under test: the harness hands over stimuli, the DUT answers with time-stamped
-//! observations, in order. Everything that crosses this boundary is in this file.
+//! observations, in order. Everything that crosses this boundary is in this file, and in `port` and `smi` beside it for what
+//! only an FS-Master has.
 //!
 //! Octets only: what they mean is the business of the harness.
+
+mod port;
+pub mod smi;
+
+pub use port::{Identity, Line, Mode, Response, Source};
+pub use smi::{SmiRequest, SmiResult, SmiService};
 
 use crate::DutError;
 use fsct_protocol::{Edition, ProtMode};
@@ -21,7 +28,7 @@ pub trait Dut: Send {
     /// Carries out `stimuli` in order and appends what was observed, in order, to `observed`.
     ///
     /// Every [`Stimulus::Exchange`] yields exactly one [`Seen::Image`], the last observation of that stimulus. Every
-    /// `Read` and `Write` yields one answer. A stimulus that is not served yields [`Seen::Unsupported`], never nothing.
+    /// `Read` and `Write` yields one answer, every `Smi` one result. A stimulus that is not served yields [`Seen::Unsupported`], never nothing.
     ///
     /// Callers keep to [`MAX_BATCH`] stimuli; in a longer batch positions start again at 0 after every [`MAX_BATCH`].
     ///
@@ -260,13 +267,47 @@ pub enum Stimulus {
     },
     /// Set an input service of the application.
     Set {
-        /// Port, from 1.
+        /// Port, from 1; 0 for a service of the whole DUT.
         port: u8,
         /// Which service.
         service: Service,
         /// Process data, or one octet 0 or 1.
         value: Octets,
     },
+    /// FS-Master only: this Device is connected to a port and answers, or (`None`) nothing is.
+    Plug {
+        /// Port, from 1.
+        port: u8,
+        /// What is connected.
+        device: Option<Identity>,
+    },
+    /// FS-Master only: the connected Device answers the [`Seen::Request`] that is open on the port.
+    Respond {
+        /// Port, from 1.
+        port: u8,
+        /// Its answer.
+        response: Response,
+    },
+    /// FS-Master only: the connected Device raises an Event.
+    Raise {
+        /// Port, from 1.
+        port: u8,
+        /// EventCode.
+        code: u16,
+        /// EventQualifier of the base standard: mode, type, source, instance.
+        qualifier: u8,
+    },
+    /// A level on C/Q or I/Q, driven by what is connected to the DUT.
+    Drive {
+        /// Port, from 1.
+        port: u8,
+        /// Which line.
+        line: Line,
+        /// High or low.
+        level: bool,
+    },
+    /// FS-Master only: a request through the SMI.
+    Smi(Box<SmiRequest>),
     /// Move a virtual clock.
     Advance {
         /// Nanoseconds.
@@ -312,11 +353,14 @@ pub enum Service {
     FaultsS,
     /// FS-Master output: qualifier of the process data, 1 = GOOD.
     Qualifier,
+    /// FS-Master input, for the whole DUT: the authenticity that the upper-level FSCP has given it, A-Code and extended
+    /// A-Code of four octets each.
+    FscpAuthenticity,
 }
 
 impl Service {
     /// All services with their numbers in `PROTOCOL.md` and the standard's spelling.
-    pub const ALL: [(Service, u8, &'static str); 14] = [
+    pub const ALL: [(Service, u8, &'static str); 15] = [
         (Service::PdinD, 1, "PDin_D"),
         (Service::SdsetDs, 2, "SDset_DS"),
         (Service::PdoutD, 3, "PDout_D"),
@@ -331,6 +375,7 @@ impl Service {
         (Service::ChfackreqS, 22, "ChFAckReq_S"),
         (Service::FaultsS, 23, "FAULTS_S"),
         (Service::Qualifier, 24, "qualifier"),
+        (Service::FscpAuthenticity, 25, "FSCP_Authenticity"),
     ];
 
     /// The number of the service in `PROTOCOL.md`.
@@ -393,6 +438,46 @@ pub enum Seen {
     Refused {
         /// ErrorType of the base standard: ErrorCode in the high, AdditionalCode in the low octet.
         error: u16,
+    },
+    /// FS-Master only: the mode it commands on a port has changed.
+    Mode {
+        /// Port, from 1.
+        port: u8,
+        /// The new one.
+        mode: Mode,
+    },
+    /// FS-Master only: on-request data for the Device on a port. Open until [`Stimulus::Respond`]; one at a time.
+    Request {
+        /// Port, from 1.
+        port: u8,
+        /// Index.
+        index: u16,
+        /// Subindex; 0 is the whole record.
+        subindex: u8,
+        /// Value to write; `None`: a read.
+        data: Option<Vec<u8>>,
+    },
+    /// The DUT has changed a line: [`Line::Power`] and [`Line::WakeUp`] of an FS-Master, C/Q and I/Q of an FS-Device.
+    Line {
+        /// Port, from 1.
+        port: u8,
+        /// Which line.
+        line: Line,
+        /// High or low.
+        level: bool,
+    },
+    /// FS-Master only: result of an SMI request, exactly one for each.
+    Smi(Box<SmiResult>),
+    /// FS-Master only: SMI_DeviceEvent or SMI_PortEvent.
+    Indication {
+        /// Port, from 1.
+        port: u8,
+        /// Device or port.
+        source: Source,
+        /// EventQualifier of the base standard: mode, type, source, instance.
+        qualifier: u8,
+        /// EventCode (Tables B.1 and B.2).
+        code: u16,
     },
     /// An Event of the DUT.
     Event {

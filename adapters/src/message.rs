@@ -5,6 +5,7 @@
 
 mod description;
 mod observation;
+mod port;
 mod stimulus;
 
 pub use description::{Described, Limits, pack_description, unpack_description};

@@ -1,7 +1,7 @@
 //! A wrapper that keeps what crosses the boundary to a DUT: flat entries in order, equal exchanges counted, and of very
 //! many the first and the last.
 
-use crate::{Description, Dut, DutError, Observation, Octets, Seen, Service, Stimulus, Variant};
+use crate::{Description, Dut, DutError, Observation, Octets, Seen, Service, SmiRequest, SmiResult, Stimulus, Variant};
 use std::collections::VecDeque;
 
 /// How many entries are kept; what stands between head and tail is counted and forgotten.
@@ -79,7 +79,18 @@ pub enum Happened {
         /// EventQualifier.
         qualifier: u8,
     },
-    /// A stimulus other than a read or write was not served.
+    /// What is connected to a port did something: [`Stimulus::Plug`], `Respond`, `Raise` or `Drive`.
+    Done(Stimulus),
+    /// An FS-Master did something on a port: [`Seen::Mode`], `Request`, `Line` or `Indication`.
+    Saw(Seen),
+    /// A request through the SMI; `None`: not served.
+    Smi {
+        /// The request.
+        request: Box<SmiRequest>,
+        /// What it came to.
+        result: Option<Box<SmiResult>>,
+    },
+    /// A stimulus other than a read, a write or an SMI request was not served.
     Unserved(Stimulus),
 }
 
@@ -175,12 +186,15 @@ impl<D: Dut> Recorder<D> {
     fn record(&mut self, stimulus: &Stimulus, observed: &[Observation]) {
         let served = !observed.iter().any(|observation| observation.seen == Seen::Unsupported);
         match stimulus {
-            Stimulus::Read { .. } | Stimulus::Write { .. } => {}
+            Stimulus::Read { .. } | Stimulus::Write { .. } | Stimulus::Smi(_) => {}
             _ if !served => self.push(self.now, Happened::Unserved(stimulus.clone())),
             Stimulus::Configure(variant) => self.push(self.now, Happened::Configure(*variant)),
             Stimulus::Power(on) => self.push(self.now, Happened::Power(*on)),
             Stimulus::Set { port, service, value } => {
                 self.push(self.now, Happened::Set { port: *port, service: *service, value: *value });
+            }
+            Stimulus::Plug { .. } | Stimulus::Respond { .. } | Stimulus::Raise { .. } | Stimulus::Drive { .. } => {
+                self.push(self.now, Happened::Done(stimulus.clone()));
             }
             Stimulus::Advance { ns } => self.now = self.now.saturating_add(*ns),
             Stimulus::Exchange { .. } | Stimulus::Other { .. } => {}
@@ -204,6 +218,11 @@ impl<D: Dut> Recorder<D> {
             Seen::Event { code, qualifier } => {
                 return self.push(at, Happened::Event { code: *code, qualifier: *qualifier });
             }
+            seen @ (Seen::Mode { .. } | Seen::Request { .. } | Seen::Line { .. } | Seen::Indication { .. }) => {
+                return self.push(at, Happened::Saw(seen.clone()));
+            }
+            Seen::Smi(result) => return self.smi(at, stimulus, Some(result.clone())),
+            Seen::Unsupported if matches!(stimulus, Stimulus::Smi(_)) => return self.smi(at, stimulus, None),
             Seen::Value(octets) => Answer::Value(octets.clone()),
             Seen::Written => Answer::Written,
             Seen::Refused { error } => Answer::Refused(*error),
@@ -211,6 +230,12 @@ impl<D: Dut> Recorder<D> {
         };
         if matches!(stimulus, Stimulus::Read { .. } | Stimulus::Write { .. }) {
             self.push(at, Happened::Acyclic { request: stimulus.clone(), answer });
+        }
+    }
+
+    fn smi(&mut self, at: u64, stimulus: &Stimulus, result: Option<Box<SmiResult>>) {
+        if let Stimulus::Smi(request) = stimulus {
+            self.push(at, Happened::Smi { request: request.clone(), result });
         }
     }
 

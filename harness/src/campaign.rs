@@ -317,6 +317,8 @@ impl Run<'_> {
             key: key.clone(),
             id: case.id.clone(),
             suite: case.suite.clone(),
+            dut: 0,
+            role: case.role.to_string(),
             title: case.title.clone(),
             place: case.place(),
             sweep: binding.values.clone(),
@@ -349,10 +351,11 @@ fn hash(text: &str) -> u64 {
 }
 
 /// What the DUT says of itself, for the record.
-pub fn dut_info(url: &str, description: &Description) -> DutInfo {
+pub fn dut_info(url: &str, profile: &Profile, description: &Description) -> DutInfo {
     DutInfo {
         url: url.to_owned(),
         role: description.role.to_string(),
+        profile: profile.name.clone(),
         vendor: description.vendor.clone(),
         product: description.product.clone(),
         version: description.version.clone(),

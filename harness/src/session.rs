@@ -290,6 +290,7 @@ impl<'d> Session<'d> {
             Seen::Event { code, .. } => {
                 self.events.push(*code);
             }
+            Seen::Mode { .. } | Seen::Request { .. } | Seen::Line { .. } | Seen::Smi(_) | Seen::Indication { .. } => {}
             Seen::Unsupported => match stimulus {
                 Stimulus::Read { .. } | Stimulus::Write { .. } => self.reply = Some(Reply::Unsupported),
                 Stimulus::Other { .. } => {}

@@ -1,7 +1,7 @@
 //! What the record says of a case: the recording of what crossed the boundary, with the transitions the oracle saw and the
 //! tester's notes beside it.
 
-use fsct_adapters::{Answer, Happened, Octets, Recording, Service, Stimulus};
+use fsct_adapters::{Answer, Happened, Line, Octets, Recording, Response, Seen, Service, Stimulus};
 use fsct_protocol::scl::T;
 use fsct_reports::record::{Entry, What};
 use std::collections::VecDeque;
@@ -100,10 +100,23 @@ fn told(entry: &fsct_adapters::Entry, zero: u64) -> Entry {
         Happened::Exchange { port, sent, got } => {
             What::Exchange { port: *port, sent: sent.as_ref().map(octets), got: got.as_ref().map(octets) }
         }
-        Happened::Set { service: which, value, .. } => What::Set { service: service(which), value: octets(value) },
-        Happened::Service { service: which, value, .. } => {
-            What::Service { service: service(which), value: octets(value) }
+        Happened::Set { port, service: which, value } => {
+            What::Set { port: *port, service: service(which), value: octets(value) }
         }
+        Happened::Service { port, service: which, value } => {
+            What::Service { port: *port, service: service(which), value: octets(value) }
+        }
+        Happened::Done(stimulus) => What::Port { port: port(stimulus), dut: false, text: name(stimulus) },
+        Happened::Saw(seen) => told_of_port(seen),
+        Happened::Smi { request, result } => What::Smi {
+            request: format!("{} port {} {}", request.service, request.port, hex(&request.octets)),
+            result: match result {
+                None => "unsupported".to_owned(),
+                Some(result) => {
+                    format!("Result({}) {}", if result.positive { "+" } else { "-" }, hex(&result.octets))
+                }
+            },
+        },
         Happened::Power(on) => What::Power { on: *on },
         Happened::Acyclic { request, answer } => What::Acyclic {
             request: name(request),
@@ -135,8 +148,50 @@ pub fn name(stimulus: &Stimulus) -> String {
         Stimulus::Write { index, subindex, data } => format!("write 0x{index:04X}.{subindex} = {}", hex(data)),
         Stimulus::Set { service, .. } => service.name().to_owned(),
         Stimulus::Advance { .. } => "a virtual clock".to_owned(),
+        Stimulus::Plug { device: None, .. } => "nothing connected".to_owned(),
+        Stimulus::Plug { device: Some(identity), .. } => format!(
+            "Device connected: VendorID 0x{:04X}, DeviceID 0x{:06X}, COM{}, {} octets in, {} out",
+            identity.vendor_id, identity.device_id, identity.com, identity.pd_in, identity.pd_out
+        ),
+        Stimulus::Respond { response, .. } => match response {
+            Response::Value(value) => format!("the Device answers {}", hex(value)),
+            Response::Written => "the Device answers: written".to_owned(),
+            Response::Refused(error) => format!("the Device refuses with 0x{error:04X}"),
+        },
+        Stimulus::Raise { code, qualifier, .. } => {
+            format!("the Device raises Event 0x{code:04X} qualifier 0x{qualifier:02X}")
+        }
+        Stimulus::Drive { line, level, .. } => format!("{line} driven {}", if *level { "high" } else { "low" }),
+        Stimulus::Smi(request) => request.service.to_string(),
         Stimulus::Other { kind, .. } => format!("stimulus kind {kind}"),
     }
+}
+
+fn port(stimulus: &Stimulus) -> u8 {
+    match stimulus {
+        Stimulus::Plug { port, .. }
+        | Stimulus::Respond { port, .. }
+        | Stimulus::Raise { port, .. }
+        | Stimulus::Drive { port, .. } => *port,
+        _ => 0,
+    }
+}
+
+fn told_of_port(seen: &Seen) -> What {
+    let (port, text) = match seen {
+        Seen::Mode { port, mode } => (*port, mode.to_string()),
+        Seen::Request { port, index, subindex, data: None } => (*port, format!("reads 0x{index:04X}.{subindex}")),
+        Seen::Request { port, index, subindex, data: Some(data) } => {
+            (*port, format!("writes 0x{index:04X}.{subindex} = {}", hex(data)))
+        }
+        Seen::Line { port, line: Line::WakeUp, .. } => (*port, "wake-up pulse".to_owned()),
+        Seen::Line { port, line, level } => (*port, format!("{line} {}", if *level { "on" } else { "off" })),
+        Seen::Indication { port, source, qualifier, code } => {
+            (*port, format!("{source} 0x{code:04X} qualifier 0x{qualifier:02X}"))
+        }
+        _ => (0, String::new()),
+    };
+    What::Port { port, dut: true, text }
 }
 
 /// Octets as upper-case hexadecimal.

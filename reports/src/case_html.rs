@@ -16,18 +16,13 @@ const TEXT: usize = 600;
 /// Steps listed, and checks of one step.
 const LISTED: usize = 80;
 
-/// What is left of the page, and what is the same for all cases.
+/// What is left of the page.
+#[derive(Default)]
 pub struct Room {
     left: Cell<usize>,
-    side: Side,
 }
 
 impl Room {
-    /// A page without room yet, about a DUT of this role.
-    pub fn new(role: &str) -> Room {
-        Room { left: Cell::new(0), side: Side::of(role) }
-    }
-
     /// So many octets more.
     pub fn add(&self, octets: usize) {
         self.left.set(self.left.get().saturating_add(octets));
@@ -43,7 +38,7 @@ impl Room {
 /// A case that needs a reader; `None` when there is no room left even without steps and chart.
 pub fn full(case: &CaseRecord, room: &Room) -> Option<Markup> {
     let (said, class) = word(case);
-    let around = around(case, room.side);
+    let around = around(case, Side::of(&case.role));
     let told = room.take(html! {
         h3 { span class=(format!("word {class}")) { (said) } " " (clean(&case.id)) ": " (short(&case.title, TEXT)) }
         p.soft { code { (short(&case.key, TEXT)) } " · " (clean(&case.place)) " · execution: " (execution_name(case.execution)) }
@@ -75,7 +70,7 @@ pub fn requirements(case: &CaseRecord) -> String {
 pub fn body(case: &CaseRecord, room: &Room) -> Option<Markup> {
     room.take(html! {
         (steps(case))
-        @if !case.trace.is_empty() { (chart(case, room.side)) }
+        @if !case.trace.is_empty() { (chart(case, Side::of(&case.role))) }
     })
 }
 

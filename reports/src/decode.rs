@@ -20,6 +20,18 @@ impl Side {
         if role == "master" { Side::Master } else { Side::Device }
     }
 
+    /// Every transition of the machines of this side, by the names the record uses: the SCL's, and of an FS-Master the OSSDe
+    /// qualifier handler's (Table 43).
+    pub fn transitions(self) -> Vec<String> {
+        match self {
+            Side::Device => (20..=31).map(|number| format!("T{number}")).collect(),
+            Side::Master => {
+                let ossde = (1..=6).map(|number| format!("OSSDe T{number}"));
+                (1..=14).map(|number| format!("T{number}")).chain(ossde).collect()
+            }
+        }
+    }
+
     /// What was sent to the DUT, field by field; `None` was lost on the way.
     pub fn sent(self, hex: Option<&str>, variant: &VariantInfo) -> String {
         match (hex, self) {

@@ -2,7 +2,7 @@
 
 use crate::case_html::{self, Room};
 use crate::journal::Run;
-use crate::record::{CaseRecord, Execution, Verdict};
+use crate::record::{CaseRecord, DutInfo, Execution, Verdict};
 use crate::summary::Summary;
 use crate::text::{short, visible as clean};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -24,9 +24,10 @@ const NAME: usize = 120;
 /// The report of a run.
 pub fn render(run: &Run) -> String {
     let summary = Summary::of(run);
-    let dut = &run.header.dut;
-    let title = format!("fsct: {} {}", short(&dut.product, NAME), short(&dut.version, NAME));
-    let room = Room::new(&dut.role);
+    let products = run.header.duts.iter().map(|dut| short(&dut.product, NAME)).filter(|product| !product.is_empty());
+    let products = products.collect::<Vec<_>>().join(", ");
+    let title = format!("fsct: {products}");
+    let room = Room::default();
     let markup = html! {
         (DOCTYPE)
         html lang="en" {
@@ -39,7 +40,7 @@ pub fn render(run: &Run) -> String {
             }
             body {
                 main {
-                    h1 { "IO-Link Safety conformance" @if !dut.product.is_empty() { ": " (short(&dut.product, NAME)) } }
+                    h1 { "IO-Link Safety conformance" @if !products.is_empty() { ": " (products) } }
                     p.soft { "Evidence for an assessment, not a certificate. Made by fsct " (short(&run.header.fsct, NAME)) " from run.jsonl." }
                     (banner(&summary))
                     (incomplete(run, &summary))
@@ -111,16 +112,17 @@ fn incomplete(run: &Run, summary: &Summary) -> Markup {
 }
 
 fn facts(run: &Run, summary: &Summary) -> Markup {
-    let dut = &run.header.dut;
     let name = |text: &str| short(text, NAME);
-    let own_words = [&dut.vendor, &dut.product, &dut.version].map(|text| name(text));
-    let own_words: Vec<String> = own_words.into_iter().filter(|text| !text.is_empty()).collect();
+    let own_words = |dut: &DutInfo| {
+        let words = [&dut.vendor, &dut.product, &dut.version].map(|text| name(text));
+        words.into_iter().filter(|text| !text.is_empty()).collect::<Vec<_>>()
+    };
     html! {
-        dl {
+        @for dut in &run.header.duts { dl {
             dt { "Device under test" }
             // A DUT that was reached names its clock.
             @if dut.clock.is_empty() { dd { "not reached: nothing is known of it" } }
-            @else { dd { (own_words.join(" · ")) span.soft { " in its own words" } } }
+            @else { dd { (own_words(dut).join(" · ")) span.soft { " in its own words" } } }
             dt { "Address" } dd { code { (short(&dut.url, 4 * NAME)) } }
             dt { "Role" } dd { (name(&dut.role)) }
             @if !dut.clock.is_empty() {
@@ -130,7 +132,9 @@ fn facts(run: &Run, summary: &Summary) -> Markup {
             @if !dut.offers.is_empty() {
                 dt { "Offers" } dd { @for offer in dut.offers.iter().take(LISTED) { (name(offer)) br; } }
             }
-            dt { "Profile" } dd { (name(&run.header.profile)) }
+            dt { "Profile" } dd { (name(&dut.profile)) }
+        } }
+        dl {
             dt { "Seed" } dd { (summary.seed) }
             dt { "Cases" } dd { (summary.cases) " of " (summary.planned) " planned, " (summary.not_applicable) " more do not apply" }
         }

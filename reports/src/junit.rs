@@ -38,12 +38,11 @@ pub fn render(run: &Run) -> Result<String, SerializeError> {
         let mut suite = TestSuite::new(clean(name));
         suite.set_time(cases.iter().filter_map(|case| case.time).fold(Duration::ZERO, Duration::saturating_add));
         suite.add_property(Property::new("seed", run.header.seed.to_string()));
-        suite.add_property(Property::new("profile", clean(&run.header.profile)));
-        suite.add_property(Property::new(
-            "dut",
-            clean(&format!("{} {}", run.header.dut.product, run.header.dut.version)),
-        ));
-        suite.add_property(Property::new("url", clean(&run.header.dut.url)));
+        for dut in &run.header.duts {
+            suite.add_property(Property::new("profile", clean(&dut.profile)));
+            suite.add_property(Property::new("dut", clean(&format!("{} {}", dut.product, dut.version))));
+            suite.add_property(Property::new("url", clean(&dut.url)));
+        }
         suite.add_test_cases(cases);
         report.add_test_suite(suite);
     }
@@ -72,7 +71,7 @@ fn left_out(key: &str, term: &str) -> TestCase {
 }
 
 fn test_case(case: &CaseRecord, header: &Header) -> TestCase {
-    let side = Side::of(&header.dut.role);
+    let side = Side::of(&case.role);
     let mut test = TestCase::new(clean(&case.key), status(case, side));
     test.set_classname(clean(&format!("{}.{}.{}", case.suite, case.variant.edition, case.variant.mode)));
     test.set_time(Duration::from_nanos(case.duration_ns));

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Version of this schema; the number changes when a reader of the old one would misread.
-pub const SCHEMA: &str = "fsct-run/1";
+pub const SCHEMA: &str = "fsct-run/2";
 
 /// One line of the journal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -31,10 +31,9 @@ pub struct Header {
     pub fsct: String,
     /// The seed that everything random derives from.
     pub seed: u64,
-    /// The device under test.
-    pub dut: DutInfo,
-    /// Name of the profile.
-    pub profile: String,
+    /// The devices under test, in the order they were judged; a case says by number which one it is about.
+    #[serde(rename = "dut")]
+    pub duts: Vec<DutInfo>,
     /// Number of expanded cases planned.
     pub planned: usize,
     /// Cases left out by the selection, with the term that excluded them: key, then reason.
@@ -50,6 +49,8 @@ pub struct DutInfo {
     pub url: String,
     /// `device` or `master`.
     pub role: String,
+    /// Name of the profile it was judged by.
+    pub profile: String,
     /// Maker.
     pub vendor: String,
     /// Product.
@@ -131,6 +132,10 @@ pub struct CaseRecord {
     pub id: String,
     /// Suite it stands in.
     pub suite: String,
+    /// Number of the DUT in the header, from 0.
+    pub dut: usize,
+    /// Role of the DUT, `device` or `master`: needed to decode the trace.
+    pub role: String,
     /// What it shows.
     pub title: String,
     /// File and line of the case.
@@ -243,6 +248,14 @@ fn is_one(count: &u64) -> bool {
     *count == 1
 }
 
+fn first() -> u8 {
+    1
+}
+
+fn is_first(port: &u8) -> bool {
+    *port == 1
+}
+
 /// What crossed the boundary.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -258,6 +271,9 @@ pub enum What {
     },
     /// Application service set by the upper tester.
     Set {
+        /// Port, from 1; 0 for the whole DUT.
+        #[serde(default = "first", skip_serializing_if = "is_first")]
+        port: u8,
         /// The standard's spelling.
         service: String,
         /// Hexadecimal.
@@ -265,6 +281,9 @@ pub enum What {
     },
     /// Application service reported by the DUT.
     Service {
+        /// Port, from 1.
+        #[serde(default = "first", skip_serializing_if = "is_first")]
+        port: u8,
         /// The standard's spelling.
         service: String,
         /// Hexadecimal.
@@ -281,6 +300,22 @@ pub enum What {
         request: String,
         /// `= 00..`, `written`, `refused 0x8030`, `unsupported`.
         answer: String,
+    },
+    /// What happened on a port of an FS-Master beside process data: lines, modes, on-request data, Events.
+    Port {
+        /// Port, from 1.
+        port: u8,
+        /// Done by the DUT and not by what is connected to it.
+        dut: bool,
+        /// In words, with names and numbers of the standard.
+        text: String,
+    },
+    /// A request through the SMI.
+    Smi {
+        /// Service, port and ArgBlock in words.
+        request: String,
+        /// Result(+) or Result(-) with its ArgBlock in words.
+        result: String,
     },
     /// An Event.
     Event {

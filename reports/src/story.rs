@@ -70,8 +70,12 @@ pub fn milliseconds(nanoseconds: u64) -> String {
 /// What crossed the boundary, when it was no process data.
 pub fn note(what: &What) -> String {
     match what {
-        What::Set { service, value } => format!("{service} := {value}"),
-        What::Service { service, value } => format!("{service} = {value}"),
+        What::Set { port: 1, service, value } => format!("{service} := {value}"),
+        What::Set { port, service, value } => format!("port {port}: {service} := {value}"),
+        What::Service { port: 1, service, value } => format!("{service} = {value}"),
+        What::Service { port, service, value } => format!("port {port}: {service} = {value}"),
+        What::Port { port, text, .. } => format!("port {port}: {text}"),
+        What::Smi { request, result } => format!("{request} -> {result}"),
         What::Power { on } => format!("power {}", if *on { "on" } else { "off" }),
         What::Acyclic { request, answer } => format!("{request} {answer}"),
         What::Event { code, qualifier } => format!("Event 0x{code:04X} qualifier 0x{qualifier:02X}"),

@@ -1,5 +1,6 @@
 //! `summary.json`: the run in a few numbers, and the exit code.
 
+use crate::decode::Side;
 use crate::journal::{ReadError, Reader, Run};
 use crate::record::{CaseRecord, DutInfo, Execution, Footer, Header, Verdict};
 use serde::Serialize;
@@ -21,8 +22,9 @@ pub struct Summary {
     pub tolerances: BTreeMap<String, usize>,
     /// Seed.
     pub seed: u64,
-    /// The device under test, in its own words.
-    pub dut: DutInfo,
+    /// The devices under test, in their own words.
+    #[serde(rename = "dut")]
+    pub duts: Vec<DutInfo>,
     /// Expanded cases planned.
     pub planned: usize,
     /// Cases left out because they do not apply.
@@ -55,15 +57,15 @@ impl Summary {
     }
 
     fn begin(header: &Header) -> Summary {
-        let machine = if header.dut.role == "master" { 1..=14 } else { 20..=31 };
+        let roles: Vec<Side> = header.duts.iter().map(|dut| Side::of(&dut.role)).collect();
         Summary {
             cases: 0,
             verdicts: VERDICTS.map(|verdict| (verdict_name(verdict).to_owned(), 0)).into(),
             execution: EXECUTIONS.map(|execution| (execution_name(execution).to_owned(), 0)).into(),
-            transitions: machine.map(|number| (format!("T{number}"), 0)).collect(),
+            transitions: roles.iter().flat_map(|side| side.transitions()).map(|name| (name, 0)).collect(),
             tolerances: BTreeMap::new(),
             seed: header.seed,
-            dut: header.dut.clone(),
+            duts: header.duts.clone(),
             planned: header.planned,
             not_applicable: header.not_applicable.len(),
             partial: true,

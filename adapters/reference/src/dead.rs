@@ -115,7 +115,7 @@ impl Shell {
                 Stimulus::Write { .. } => seen.push(Seen::Written),
                 Stimulus::Set { port: PORT, service: Service::PdinD | Service::SdsetDs, .. } => {}
                 Stimulus::Advance { ns } => self.now = self.now.saturating_add(*ns),
-                Stimulus::Configure(_) | Stimulus::Set { .. } | Stimulus::Other { .. } => seen.push(Seen::Unsupported),
+                _ => seen.push(Seen::Unsupported),
             }
         }
     }

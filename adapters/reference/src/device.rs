@@ -97,6 +97,11 @@ impl FsDevice {
             Stimulus::Set { port: PORT, service, value } if self.set(*service, value) => {}
             Stimulus::Advance { ns } if self.began.is_none() => self.advance_to(self.now.saturating_add(*ns), seen),
             Stimulus::Set { .. } | Stimulus::Advance { .. } | Stimulus::Other { .. } => seen.push(Seen::Unsupported),
+            Stimulus::Plug { .. }
+            | Stimulus::Respond { .. }
+            | Stimulus::Raise { .. }
+            | Stimulus::Drive { .. }
+            | Stimulus::Smi(_) => seen.push(Seen::Unsupported),
         }
     }
 

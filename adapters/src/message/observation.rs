@@ -1,7 +1,7 @@
 //! Observations in the payload of [`OBSERVED`](super::OBSERVED): a flag octet, then stimulus, time and TLV of each.
 
 use super::{Cursor, Malformed, put};
-use crate::{Observation, Octets, Seen, Service};
+use crate::{Line, Mode, Observation, Octets, Seen, Service, SmiResult, Source};
 
 const IMAGE: u8 = 1;
 const SERVICE: u8 = 2;
@@ -10,6 +10,11 @@ const WRITTEN: u8 = 4;
 const REFUSED: u8 = 5;
 const EVENT: u8 = 6;
 const UNSUPPORTED: u8 = 7;
+const MODE: u8 = 8;
+const REQUEST: u8 = 9;
+const LINE: u8 = 10;
+const SMI: u8 = 11;
+const INDICATION: u8 = 12;
 
 /// Bit 0 of the flags: more frames answer the same request.
 const MORE: u8 = 1;
@@ -65,6 +70,22 @@ fn put_seen(out: &mut Vec<u8>, seen: &Seen) {
         Seen::Refused { error } => put(out, REFUSED, &[&error.to_be_bytes()]),
         Seen::Event { code, qualifier } => put(out, EVENT, &[&code.to_be_bytes(), &[*qualifier]]),
         Seen::Unsupported => put(out, UNSUPPORTED, &[]),
+        Seen::Mode { port, mode } => put(out, MODE, &[&[*port, mode.number()]]),
+        Seen::Request { port, index, subindex, data } => {
+            let written = data.as_ref();
+            let head = [*port, u8::from(written.is_some())];
+            put(out, REQUEST, &[&head, &index.to_be_bytes(), &[*subindex], written.map_or(&[], Vec::as_slice)]);
+        }
+        Seen::Line { port, line, level } => put(out, LINE, &[&[*port, line.number(), u8::from(*level)]]),
+        Seen::Smi(result) => {
+            let SmiResult { port, client_id, positive, reference, length, octets } = result.as_ref();
+            let numbers = [client_id.to_be_bytes(), reference.to_be_bytes(), length.to_be_bytes()];
+            put(out, SMI, &[&[*port, u8::from(*positive)], numbers.as_flattened(), octets]);
+        }
+        Seen::Indication { port, source, qualifier, code } => {
+            let source = if *source == Source::Device { 1 } else { 2 };
+            put(out, INDICATION, &[&[*port, source, *qualifier], &code.to_be_bytes()]);
+        }
     }
 }
 
@@ -95,6 +116,44 @@ fn seen(kind: u8, value: &[u8]) -> Result<Seen, Malformed> {
         (EVENT, _) => Err(length("an Event")),
         (UNSUPPORTED, []) => Ok(Seen::Unsupported),
         (UNSUPPORTED, _) => Err(length("an answer \"unsupported\"")),
+        (MODE, [port, number]) => {
+            let unknown = Malformed::Number { field: "a mode", number: *number };
+            Ok(Seen::Mode { port: *port, mode: Mode::from_number(*number).ok_or(unknown)? })
+        }
+        (MODE, _) => Err(length("a mode")),
+        (REQUEST, [port, write @ (0 | 1), high, low, subindex, data @ ..]) if *write == 1 || data.is_empty() => {
+            Ok(Seen::Request {
+                port: *port,
+                index: u16::from_be_bytes([*high, *low]),
+                subindex: *subindex,
+                data: (*write == 1).then(|| data.to_vec()),
+            })
+        }
+        (REQUEST, _) => Err(length("on-request data")),
+        (LINE, [port, number, level @ (0 | 1)]) => {
+            let unknown = Malformed::Number { field: "a line", number: *number };
+            Ok(Seen::Line { port: *port, line: Line::from_number(*number).ok_or(unknown)?, level: *level == 1 })
+        }
+        (LINE, _) => Err(length("a line")),
+        (
+            SMI,
+            [port, positive @ (0 | 1), client_1, client_0, reference_1, reference_0, length_1, length_0, octets @ ..],
+        ) => Ok(Seen::Smi(Box::new(SmiResult {
+            port: *port,
+            client_id: u16::from_be_bytes([*client_1, *client_0]),
+            positive: *positive == 1,
+            reference: u16::from_be_bytes([*reference_1, *reference_0]),
+            length: u16::from_be_bytes([*length_1, *length_0]),
+            octets: octets.to_vec(),
+        }))),
+        (SMI, _) => Err(length("the result of an SMI service")),
+        (INDICATION, [port, source @ (1 | 2), qualifier, high, low]) => Ok(Seen::Indication {
+            port: *port,
+            source: if *source == 1 { Source::Device } else { Source::Port },
+            qualifier: *qualifier,
+            code: u16::from_be_bytes([*high, *low]),
+        }),
+        (INDICATION, _) => Err(length("an Event indicated by an FS-Master")),
         (number, _) => Err(Malformed::Number { field: "the kind of an observation", number }),
     }
 }

@@ -1,8 +1,9 @@
 //! Stimuli in the payload of [`APPLY`](super::APPLY): their number, then one TLV each.
 
 use super::description::{edition, edition_number};
+use super::port::{pack_identity, pack_response, unpack_identity, unpack_response};
 use super::{Cursor, Malformed, put};
-use crate::{Octets, Service, Stimulus, Variant};
+use crate::{Line, Octets, Service, SmiRequest, SmiService, Stimulus, Variant};
 use fsct_protocol::ProtMode;
 
 const CONFIGURE: u8 = 1;
@@ -12,6 +13,11 @@ const READ: u8 = 4;
 const WRITE: u8 = 5;
 const SET: u8 = 6;
 const ADVANCE: u8 = 7;
+const PLUG: u8 = 8;
+const RESPOND: u8 = 9;
+const RAISE: u8 = 10;
+const DRIVE: u8 = 11;
+const SMI: u8 = 12;
 
 /// Writes as many of `stimuli` into `payload` as `limit` octets and `most` stimuli allow, and says how many these are;
 /// 0 when not even the first fits.
@@ -61,6 +67,16 @@ fn put_stimulus(out: &mut Vec<u8>, stimulus: &Stimulus) {
         Stimulus::Write { index, subindex, data } => put(out, WRITE, &[&index.to_be_bytes(), &[*subindex], data]),
         Stimulus::Set { port, service, value } => put(out, SET, &[&[*port, service.number()], value.as_slice()]),
         Stimulus::Advance { ns } => put(out, ADVANCE, &[&ns.to_be_bytes()]),
+        Stimulus::Plug { port, device: None } => put(out, PLUG, &[&[*port]]),
+        Stimulus::Plug { port, device: Some(identity) } => put(out, PLUG, &[&[*port], &pack_identity(identity)]),
+        Stimulus::Respond { port, response } => put(out, RESPOND, &[&[*port], &pack_response(response)]),
+        Stimulus::Raise { port, code, qualifier } => put(out, RAISE, &[&[*port], &code.to_be_bytes(), &[*qualifier]]),
+        Stimulus::Drive { port, line, level } => put(out, DRIVE, &[&[*port, line.number(), u8::from(*level)]]),
+        Stimulus::Smi(request) => {
+            let SmiRequest { service, port, client_id, expected, octets } = request.as_ref();
+            let head = [service.number(), *port];
+            put(out, SMI, &[&head, &client_id.to_be_bytes(), &expected.to_be_bytes(), octets]);
+        }
         Stimulus::Other { kind, octets } => put(out, *kind, &[octets]),
     }
 }
@@ -84,6 +100,24 @@ fn known(kind: u8, value: &[u8]) -> Option<Stimulus> {
         }
         (SET, [port, service, value @ ..]) => {
             Stimulus::Set { port: *port, service: Service::from_number(*service)?, value: Octets::new(value)? }
+        }
+        (PLUG, [port]) => Stimulus::Plug { port: *port, device: None },
+        (PLUG, [port, identity @ ..]) => Stimulus::Plug { port: *port, device: Some(unpack_identity(identity)?) },
+        (RESPOND, [port, response @ ..]) => Stimulus::Respond { port: *port, response: unpack_response(response)? },
+        (RAISE, [port, high, low, qualifier]) => {
+            Stimulus::Raise { port: *port, code: u16::from_be_bytes([*high, *low]), qualifier: *qualifier }
+        }
+        (DRIVE, [port, line, level @ (0 | 1)]) => {
+            Stimulus::Drive { port: *port, line: Line::from_number(*line)?, level: *level == 1 }
+        }
+        (SMI, [service, port, client_1, client_0, expected_1, expected_0, octets @ ..]) => {
+            Stimulus::Smi(Box::new(SmiRequest {
+                service: SmiService::from_number(*service)?,
+                port: *port,
+                client_id: u16::from_be_bytes([*client_1, *client_0]),
+                expected: u16::from_be_bytes([*expected_1, *expected_0]),
+                octets: octets.to_vec(),
+            }))
         }
         (ADVANCE, ns) => Stimulus::Advance { ns: u64::from_be_bytes(ns.try_into().ok()?) },
         _ => return None,

@@ -62,12 +62,26 @@ impl<'a> Answers<'a> {
                 }
                 self.answer = true;
             }
-            (_, Seen::Value(_) | Seen::Written | Seen::Refused { .. }) => {
+            (Some(Stimulus::Smi(_)), Seen::Smi(_) | Seen::Unsupported) => {
+                if self.answer {
+                    return self.broken("a second answer");
+                }
+                self.answer = true;
+            }
+            (_, Seen::Value(_) | Seen::Written | Seen::Refused { .. } | Seen::Smi(_)) => {
                 return self.broken("an answer that was not asked for");
             }
             (_, Seen::Unsupported) if self.unsupported => return self.broken("\"unsupported\" is said twice"),
             (_, Seen::Unsupported) => self.unsupported = true,
-            (_, Seen::Service { .. } | Seen::Event { .. }) => {}
+            (
+                _,
+                Seen::Service { .. }
+                | Seen::Event { .. }
+                | Seen::Mode { .. }
+                | Seen::Request { .. }
+                | Seen::Line { .. }
+                | Seen::Indication { .. },
+            ) => {}
         }
         Ok(())
     }
@@ -84,7 +98,9 @@ impl<'a> Answers<'a> {
     fn leave(&mut self) -> Result<(), DutError> {
         match self.asked.get(self.current) {
             Some(Stimulus::Exchange { .. }) if !self.image => return self.broken("no image"),
-            Some(Stimulus::Read { .. } | Stimulus::Write { .. }) if !self.answer => return self.broken("no answer"),
+            Some(Stimulus::Read { .. } | Stimulus::Write { .. } | Stimulus::Smi(_)) if !self.answer => {
+                return self.broken("no answer");
+            }
             _ => {}
         }
         self.current += 1;
@@ -101,6 +117,11 @@ impl<'a> Answers<'a> {
             Some(Stimulus::Write { .. }) => "write",
             Some(Stimulus::Set { .. }) => "set",
             Some(Stimulus::Advance { .. }) => "advance",
+            Some(Stimulus::Plug { .. }) => "plug",
+            Some(Stimulus::Respond { .. }) => "respond",
+            Some(Stimulus::Raise { .. }) => "raise",
+            Some(Stimulus::Drive { .. }) => "drive",
+            Some(Stimulus::Smi(_)) => "smi",
             Some(Stimulus::Other { .. }) | None => "unknown kind",
         };
         Err(DutError::Contract { what: format!("{what}, stimulus {} ({kind})", self.first + self.current) })

@@ -109,12 +109,16 @@ fn execute(args: &Args) -> Result<u8, u8> {
         schema: SCHEMA.to_owned(),
         fsct: env!("CARGO_PKG_VERSION").to_owned(),
         seed: args.seed,
-        dut: match &first {
-            Ok(_) => dut_info(&args.dut, &description),
+        duts: vec![match &first {
+            Ok(_) => dut_info(&args.dut, &profile, &description),
             // Of a DUT that was not reached nothing is known but where it should be.
-            Err(_) => DutInfo { url: args.dut.clone(), role: profile.role.to_string(), ..DutInfo::default() },
-        },
-        profile: profile.name.clone(),
+            Err(_) => DutInfo {
+                url: args.dut.clone(),
+                role: profile.role.to_string(),
+                profile: profile.name.clone(),
+                ..DutInfo::default()
+            },
+        }],
         planned: plan.cases.len(),
         not_applicable: plan.not_applicable.clone(),
         tolerances: in_force(allowed, &library.tolerances),
