@@ -1,14 +1,16 @@
 //! A whole run: connect, preflight, one case after the other, each recorded before the next begins.
 
+use crate::case::Covered;
 use crate::engine::{Engine, Judging, Outcome, execution};
 use crate::library::Library;
-use crate::oracle::{DeviceOracle, Mask, Setup};
+use crate::oracle::{Mask, Setup};
 use crate::plan::{Plan, Planned};
 use crate::profile::Profile;
 use crate::session::Session;
 use crate::tester::Tester;
 use fsct_adapters::{Description, Dut, DutError, Observation, Pco, Seen, Stimulus, Variant};
 use fsct_protocol::crc::Reading;
+use fsct_protocol::spdu::Port;
 use fsct_reports::record::{CaseRecord, DutInfo, Execution, Reason, RequirementRef, StepRecord, VariantInfo, Verdict};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::SeedableRng;
@@ -145,24 +147,27 @@ impl Run<'_> {
     /// One case on a configured DUT; `true`: the connection is of no further use.
     fn case(&self, planned: &Planned<'_>, bench: &mut Bench) -> (CaseRecord, bool) {
         let mut problems = Vec::new();
-        let start = self.library.start_steps(&planned.case.start, &mut problems);
+        let start = self.library.start_steps(planned.case.role, &planned.case.start, &mut problems);
         let steps = planned.case.steps(&planned.binding, &mut problems);
         if let Some(problem) = problems.first() {
             return (self.not_run(planned, Execution::ToolError, "tool/case", &problem.to_string()), false);
         }
-        let setup = self.setup(planned, &bench.description);
-        let rng = Pcg64Mcg::seed_from_u64(self.seed ^ hash(&planned.key));
-        let tester = Tester::new(&setup, rng);
-        let oracle = DeviceOracle::new(setup);
+        let setups: Vec<Setup> =
+            (0..bench.description.ports).map_while(|index| self.setup(planned, &bench.description, index)).collect();
+        let seed = |port: u64| Pcg64Mcg::seed_from_u64(self.seed ^ hash(&planned.key) ^ port);
+        let testers = (0..).zip(&setups).map(|(index, setup)| Tester::new(setup, seed(index))).collect();
+        if setups.is_empty() {
+            return (self.not_run(planned, Execution::DutError, "dut/contract", "the DUT has no ports"), false);
+        }
         let Bench { dut, description } = bench;
-        let mut session = Session::new(dut.as_mut(), description, self.profile, oracle, self.interrupted);
+        let mut session = Session::new(dut.as_mut(), description, self.profile, setups, self.interrupted);
         let judging = Judging {
             clauses: self.clauses(planned),
             demands: self.demands(planned),
             shown: self.library.tolerances.shown(),
         };
         let ran = catch_unwind(AssertUnwindSafe(|| {
-            Engine::new(&mut session, tester, judging).run(&start, &planned.case.start, &steps)
+            Engine::new(&mut session, testers, judging).run(&start, &planned.case.start, &steps)
         }));
         match ran {
             Ok(outcome) => {
@@ -178,16 +183,20 @@ impl Run<'_> {
         }
     }
 
-    fn setup(&self, planned: &Planned<'_>, description: &Description) -> Setup {
+    /// What the oracle of a port is told, ports counted from 0; `None` when the port cannot have a number.
+    fn setup(&self, planned: &Planned<'_>, description: &Description, index: u8) -> Option<Setup> {
         let Variant { edition, mode, pd_out, pd_in } = planned.binding.variant;
         let profile = self.profile;
-        Setup {
+        let port = Port::new(profile.port.number().checked_add(index)?)?;
+        Some(Setup {
+            role: planned.case.role,
             edition,
             mode,
             pd_out: pd_out.into(),
             pd_in: pd_in.into(),
-            port: profile.port,
+            port,
             reading: profile.reading,
+            cycle_ns: profile.master_cycle_time_ns,
             watchdog_ns: profile.watchdog_ns(),
             tick_ns: profile.timer_tick_us * 1_000,
             margin_ns: profile.margin_ns(),
@@ -196,7 +205,7 @@ impl Run<'_> {
             scl_start_ns: profile.scl_start_ms * 1_000_000,
             allowed: self.allowed,
             app: description.pcos.contains(&Pco::App),
-        }
+        })
     }
 
     /// Whether anything a case judges is demanded: only then its own expectations can fail a product.
@@ -216,17 +225,12 @@ impl Run<'_> {
     }
 
     fn record(&self, planned: &Planned<'_>, mut outcome: Outcome, mut session: Session<'_>) -> CaseRecord {
-        let taken = session.oracle.taken();
-        let count = |number: u8| taken.get(usize::from(number).wrapping_sub(20)).copied().unwrap_or(0);
-        let missed: Vec<String> = planned
-            .case
-            .covers
-            .iter()
-            .filter(|number| count(**number) == 0)
-            .map(|number| format!("T{number}"))
-            .collect();
+        let taken = session.taken();
+        let name = |covered: &Covered| covered.to_string();
+        let missed: Vec<String> =
+            planned.case.covers.iter().map(name).filter(|name| !taken.contains_key(name)).collect();
         let shown = self.library.tolerances.shown();
-        let used = session.oracle.used();
+        let used = session.used();
         if outcome.verdict < Verdict::Inconclusive && outcome.execution == Execution::Ok && !missed.is_empty() {
             // Another reading, let pass, may lead past a transition.
             let other = used.iter().any(|number| shown.has(number));
@@ -267,10 +271,7 @@ impl Run<'_> {
         record.execution = outcome.execution;
         record.reasons = outcome.reasons;
         record.tolerances = tolerances;
-        record.transitions = (20u8..=31)
-            .filter(|number| count(*number) > 0)
-            .map(|number| (format!("T{number}"), count(number)))
-            .collect();
+        record.transitions = taken;
         record.steps = outcome.steps;
         record.elided = told.elided;
         record.trace = told.entries;

@@ -1,13 +1,16 @@
 //! Executes one case: start condition, steps, and the liveness check every case ends with.
 
+mod port;
+
 use crate::case::model::*;
 use crate::expect::{self, Before};
+use crate::link::Link;
 use crate::oracle::Mask;
 use crate::partner::Partner;
 use crate::profile::{Parameterization, Profile};
 use crate::session::{Reply, Session, Stop};
 use crate::tester::Tester;
-use fsct_adapters::{DutError, Fault, Octets, Pco, Service, Stimulus};
+use fsct_adapters::{DutError, Fault, Mode, Octets, Pco, Role, Service, Stimulus};
 use fsct_protocol::fsp::{INDEX_PROTOCOL, INDEX_VERIFY};
 use fsct_reports::record::{Execution, Reason, StepRecord, Verdict};
 
@@ -45,16 +48,21 @@ pub struct Judging {
 /// A case on its way.
 pub struct Engine<'s, 'd> {
     session: &'s mut Session<'d>,
-    tester: Tester,
+    /// One for each link.
+    testers: Vec<Tester>,
     outcome: Outcome,
     judging: Judging,
     checks: usize,
     step: usize,
+    /// Octets without safety relevance in and out, as configured last.
+    nsr: (u8, u8),
+    /// ClientID of the latest SMI request.
+    client: u16,
 }
 
 impl<'s, 'd> Engine<'s, 'd> {
     /// Ready to begin.
-    pub fn new(session: &'s mut Session<'d>, tester: Tester, judging: Judging) -> Engine<'s, 'd> {
+    pub fn new(session: &'s mut Session<'d>, testers: Vec<Tester>, judging: Judging) -> Engine<'s, 'd> {
         let outcome = Outcome {
             verdict: Verdict::Pass,
             execution: Execution::Ok,
@@ -63,19 +71,23 @@ impl<'s, 'd> Engine<'s, 'd> {
             steps: Vec::new(),
             lost: false,
         };
-        Engine { session, tester, outcome, judging, checks: 0, step: 0 }
+        Engine { session, testers, outcome, judging, checks: 0, step: 0, nsr: (0, 0), client: 0 }
     }
 
     /// Runs start condition, steps and liveness check.
     pub fn run(mut self, start: &[Step], start_name: &str, steps: &[Step]) -> Outcome {
         let name = format!("start: {start_name}");
+        let liveness = match self.session.role() {
+            Role::Device => "liveness: a conformant FS-Master restores operation".to_owned(),
+            Role::Master => "liveness: a conformant FS-Device and an operator restore operation".to_owned(),
+        };
         let went = self.block(name, |engine| engine.start(start)).and_then(|()| {
             for (index, step) in steps.iter().enumerate() {
                 self.step = index + 1;
                 self.block(step.text.clone(), |engine| engine.step(step))?;
             }
             self.step = steps.len() + 1;
-            self.block("liveness: a conformant FS-Master restores operation".to_owned(), Engine::liveness)
+            self.block(liveness, Engine::liveness)
         });
         if let Err(Stopped) = went {
             for step in steps.iter().skip(self.outcome.steps.len().saturating_sub(1)) {
@@ -98,6 +110,7 @@ impl<'s, 'd> Engine<'s, 'd> {
         let first = self.session.recorded();
         self.outcome.steps.push(StepRecord { text, executed: true, entries: (first, first), checks: Vec::new() });
         self.session.events.clear();
+        self.session.links.iter_mut().for_each(Link::begin);
         let result = action(self);
         if let Some(record) = self.outcome.steps.last_mut() {
             record.entries.1 = self.session.recorded();
@@ -170,6 +183,7 @@ impl<'s, 'd> Engine<'s, 'd> {
     }
 
     fn step(&mut self, step: &Step) -> Result<(), Stop> {
+        self.turn_to(step.port)?;
         let before = Before::now(self.session);
         let reached = self.act(&step.action, &before)?;
         self.judge(&reached, &before, Verdict::Fail);
@@ -180,7 +194,7 @@ impl<'s, 'd> Engine<'s, 'd> {
 
     fn judge(&mut self, expectations: &[Expectation], before: &Before, verdict: Verdict) {
         for expectation in expectations {
-            let Some(check) = expect::judge(expectation, before, self.session, &self.tester) else { continue };
+            let Some(check) = expect::judge(expectation, before, self.session, self.tester()) else { continue };
             self.checks += 1;
             let weight = if self.judging.demands { verdict } else { Verdict::Remark };
             if !check.met
@@ -206,11 +220,11 @@ impl<'s, 'd> Engine<'s, 'd> {
     /// Expectations are written for the default readings. Once the DUT has made use of a tolerance the oracle, which
     /// knows what else that allows, judges link and application alone: what a case expects there is a remark at most.
     fn weigh(&self, key: Key, verdict: Verdict) -> Option<Verdict> {
-        let used = self.session.oracle.used();
+        let used = self.session.link().oracle.used();
         // The oracle judges by the DUT's own time stamps; a case counts on its own timing.
         let verdict = if self.session.slipped { verdict.min(Verdict::Inconclusive) } else { verdict };
         match key {
-            Key::Reply | Key::Event => Some(verdict),
+            key if !key.is_the_oracles() => Some(verdict),
             _ if used.is_empty() => Some(verdict),
             _ if used.iter().any(|number| self.judging.shown.has(number)) => Some(Verdict::Remark),
             _ => None,
@@ -232,6 +246,19 @@ impl<'s, 'd> Engine<'s, 'd> {
                 self.acyclic(Stimulus::Read { index: *index, subindex: *subindex })?;
             }
             Action::App(set) => self.app(set)?,
+            Action::Configure(configure) => self.configure(configure)?,
+            Action::Connect(connect) => self.connect(connect)?,
+            Action::Unplug => self.unplug()?,
+            Action::Smi(smi) => self.smi(smi)?,
+            Action::Drive(levels) => self.drive(levels)?,
+            Action::Pass(duration) => {
+                let ns = self.nanoseconds(*duration).unsigned_abs();
+                self.session.pass(ns)?;
+            }
+            Action::Raise { code, qualifier } => {
+                let port = self.session.link().port;
+                self.session.act(Stimulus::Raise { port, code: *code, qualifier: *qualifier })?;
+            }
             Action::Look => {}
         }
         Ok(Vec::new())
@@ -256,18 +283,20 @@ impl<'s, 'd> Engine<'s, 'd> {
     fn hold(&self, expectations: &[Expectation], before: &Before) -> bool {
         expectations
             .iter()
-            .filter_map(|expectation| expect::judge(expectation, before, self.session, &self.tester))
+            .filter_map(|expectation| expect::judge(expectation, before, self.session, self.tester()))
             .all(|check| check.met)
     }
 
     /// One SCL cycle: the SPDU goes out in every exchange until it is answered.
     fn scl_cycle(&mut self, exchange: &Exchange) -> Result<(), Stop> {
-        let echo = self.session.image;
-        let (octets, note) = self.tester.build(exchange, echo);
+        let echo = self.session.link().image;
+        let shown = self.session.answer().map(|view| view.counter());
+        let shown = shown.filter(|_| self.session.role() == Role::Master);
+        let (octets, note) = self.tester_mut().build(exchange, echo, shown);
         self.session.margin.announce(note);
         let started = self.session.now + self.session.profile.master_cycle_time_ns;
-        if exchange.image == Image::Spdu && exchange.mcount != Count::Same {
-            self.tester.first_copy = started;
+        if exchange.image == Image::Spdu && exchange.count != Count::Same {
+            self.tester_mut().first_copy = started;
         }
         if let Some(repeat) = exchange.repeat {
             for _ in 0..repeat {
@@ -278,16 +307,23 @@ impl<'s, 'd> Engine<'s, 'd> {
         // The black channel repeats the SPDU until the answer mirrors it: for as long as the latency of the profile, and
         // while the SCL may still be starting (11.5.4.3).
         for sent in 0.. {
-            if self.session.oracle.may_be_starting() {
+            let starting = self.session.link().oracle.may_be_starting();
+            if starting && self.session.role() == Role::Device {
                 // Only the copy that the started SCL takes is the first one; its answer may still be on its way.
                 let Profile { answer_latency, master_cycle_time_ns, .. } = self.session.profile;
                 let taken = self.session.now + master_cycle_time_ns;
-                self.tester.first_copy = taken.saturating_sub(answer_latency * master_cycle_time_ns);
+                self.tester_mut().first_copy = taken.saturating_sub(answer_latency * master_cycle_time_ns);
             }
             self.session.exchange(octets)?;
-            let answered = self.session.answer().map(|view| view.status().dcount_i);
-            let mirrored = exchange.image == Image::Spdu && answered.is_some() && answered == self.tester.mirror();
-            if mirrored || sent >= self.session.profile.answer_latency && !self.session.oracle.may_be_starting() {
+            let counter = self.session.answer().map(|view| view.counter());
+            let answered = exchange.image == Image::Spdu
+                && counter.is_some()
+                && match self.session.role() {
+                    Role::Device => counter == self.tester().mirror(),
+                    Role::Master => counter != shown,
+                };
+            let starting = self.session.link().oracle.may_be_starting();
+            if answered || sent >= self.session.profile.answer_latency && !starting {
                 break;
             }
         }
@@ -296,12 +332,18 @@ impl<'s, 'd> Engine<'s, 'd> {
 
     fn wait(&mut self, wait: &Wait) -> Result<(), Stop> {
         let octets = match wait.link {
-            Link::Repeat => self.tester.octets,
-            Link::Lost => None,
-            Link::Zero => self.tester.octets.map(|octets| Octets::zero(octets.as_slice().len())),
+            Meanwhile::Repeat => self.tester().octets,
+            Meanwhile::Lost => None,
+            Meanwhile::Zero => self.tester().octets.map(|octets| Octets::zero(octets.as_slice().len())),
         };
-        let until = self.tester.first_copy.saturating_add_signed(self.nanoseconds(wait.until));
-        self.session.exchange_until(until, octets)
+        let until = self.tester().first_copy.saturating_add_signed(self.nanoseconds(wait.until));
+        self.session.exchange_until(until, octets)?;
+        // An FS-Master whose MTimer has expired has sent a new SPDU: the next wait counts from there.
+        let changed = self.session.link().changed_at;
+        if self.session.role() == Role::Master && changed > self.tester().first_copy {
+            self.tester_mut().first_copy = changed;
+        }
+        Ok(())
     }
 
     fn nanoseconds(&self, duration: Duration) -> i64 {
@@ -321,11 +363,14 @@ impl<'s, 'd> Engine<'s, 'd> {
             Some(cycles) => u64::from(cycles) * (self.session.profile.answer_latency + 1),
             None => self.liveness_exchanges(),
         };
-        let mut partner = Partner::new(wanted.from, wanted.operator, self.session, &mut self.tester);
+        let index = usize::from(self.session.link().port) - 1;
+        let Some(tester) = self.testers.get_mut(index) else { return Ok(Vec::new()) };
+        let mut partner = Partner::new(wanted.from, wanted.operator, self.session, tester);
         for _ in 0..exchanges {
-            partner.exchange(self.session, &mut self.tester)?;
+            let Some(tester) = self.testers.get_mut(index) else { break };
+            partner.exchange(self.session, tester)?;
             let reached = match wanted.until.is_empty() {
-                true => wanted.within.is_none() && partner.operates(self.session, &self.tester),
+                true => wanted.within.is_none() && partner.operates(self.session, self.tester()),
                 false => self.hold(&wanted.until, before),
             };
             if reached {
@@ -340,11 +385,15 @@ impl<'s, 'd> Engine<'s, 'd> {
 
     fn operating(&mut self, partner: &Partner, exchanges: u64) {
         self.checks += 1;
-        let met = partner.operates(self.session, &self.tester);
+        let met = partner.operates(self.session, self.tester());
         let expected = format!("operation within 8 SCL cycles plus 2 FSP_Watchdog ({exchanges} exchanges)");
         let observed = if met { "operation" } else { "no operation" };
         if !met {
-            let (clause, found) = ("11.5.3 (R-11.5.3-22)", self.situation());
+            let clause = match self.session.role() {
+                Role::Device => "11.5.3 (R-11.5.3-22)",
+                Role::Master => "11.5.2 (R-11.5.2-26)",
+            };
+            let found = self.situation();
             self.reason(Verdict::Fail, "liveness", clause, &expected, &format!("no operation: {found}"));
         }
         if let Some(record) = self.outcome.steps.last_mut() {
@@ -358,15 +407,26 @@ impl<'s, 'd> Engine<'s, 'd> {
     }
 
     fn situation(&self) -> String {
-        match self.session.answer().map(|view| view.status()) {
-            None => "no answer of the SCL".to_owned(),
-            Some(s) => format!(
-                "DCount_i {} SDset {} DCommErr {} DTimeout {}",
-                s.dcount_i,
-                u8::from(s.sd_set),
-                u8::from(s.d_comm_err),
-                u8::from(s.d_timeout)
-            ),
+        let Some(view) = self.session.answer() else { return "no SPDU of the SCL".to_owned() };
+        match self.session.role() {
+            Role::Device => {
+                let s = view.status();
+                let bits = [s.sd_set, s.d_comm_err, s.d_timeout].map(u8::from);
+                format!("DCount_i {} SDset {} DCommErr {} DTimeout {}", s.dcount_i, bits[0], bits[1], bits[2])
+            }
+            Role::Master => {
+                let c = view.control();
+                let app = &self.session.link().app;
+                let bit = |value: Option<bool>| value.map_or("-", |value| if value { "1" } else { "0" });
+                format!(
+                    "MCount {} setSD {} ChFAckReq {} · SDset_S {} qualifier {}",
+                    c.mcount,
+                    u8::from(c.set_sd),
+                    u8::from(c.ch_f_ack_req),
+                    bit(app.sdset_s),
+                    bit(app.qualifier)
+                )
+            }
         }
     }
 
@@ -377,22 +437,43 @@ impl<'s, 'd> Engine<'s, 'd> {
             + profile.scl_start_ms * 1_000_000 / profile.master_cycle_time_ns
     }
 
-    /// Every case ends here: the link is restored, a conformant FS-Master acknowledges, and the DUT has to operate. A DUT that
-    /// is switched off or was never started is started first. So no case passes on a DUT that does nothing.
+    fn tester(&self) -> &Tester {
+        // There is one for each link, and the session is at one of them.
+        &self.testers[usize::from(self.session.link().port) - 1]
+    }
+
+    fn tester_mut(&mut self) -> &mut Tester {
+        &mut self.testers[usize::from(self.session.link().port) - 1]
+    }
+
+    /// Every case ends here: the link is restored, a conformant partner takes over, an operator acknowledges, and the DUT has
+    /// to operate. A DUT that is switched off or was never started is started first. So no case passes on a DUT that does
+    /// nothing.
     fn liveness(&mut self) -> Result<(), Stop> {
-        let running = self.session.oracle.state().is_some();
+        let running = self.session.link().oracle.state().is_some()
+            && (self.session.role() == Role::Device || self.session.mode() == Mode::Operate);
         if running {
             if self.session.serves(Pco::App) {
-                self.session.set(Service::SdsetDs, Octets::bit(false))?;
+                let service = match self.session.role() {
+                    Role::Device => Service::SdsetDs,
+                    Role::Master => Service::SetsdC,
+                };
+                self.session.set(service, Octets::bit(false))?;
             }
         } else {
             if self.session.serves(Pco::Power) {
                 self.power(false)?;
                 self.power(true)?;
             }
-            self.parameterize()?;
+            match self.session.role() {
+                Role::Device => self.parameterize()?,
+                Role::Master => self.bring_up()?,
+            }
+            if self.outcome.verdict == Verdict::Fail {
+                return Ok(());
+            }
         }
-        let from = if running && self.tester.count.is_some() { From::Next } else { From::Start };
+        let from = if running && self.tester().count.is_some() { From::Next } else { From::Start };
         let wanted =
             super::case::model::Partner { from, operator: Operator::Acknowledges, until: Vec::new(), within: None };
         self.partner(&wanted, &Before::default())?;
@@ -400,7 +481,7 @@ impl<'s, 'd> Engine<'s, 'd> {
     }
 
     fn power(&mut self, on: bool) -> Result<(), Stop> {
-        self.tester.restart();
+        self.testers.iter_mut().for_each(Tester::restart);
         if self.session.serves(Pco::Power) { self.session.power(on) } else { Ok(()) }
     }
 
@@ -412,13 +493,22 @@ impl<'s, 'd> Engine<'s, 'd> {
         for (service, data) in set {
             let value = match data {
                 Data::Bit(bit) => Octets::bit(*bit),
+                Data::Exactly(octets) if *service == Service::FscpAuthenticity => port::fscp_authenticity(octets),
                 data => {
-                    let setup = self.session.oracle.setup();
+                    let setup = self.session.setup();
                     // For a signature of 0 in the next answer: its PortNum and status octet are known.
-                    let next = self.tester.count.map_or(0, fsct_protocol::spdu::succ);
-                    let trailer = [setup.port.inverted(), fsct_protocol::spdu::inv3(next) << 5];
-                    let length = setup.pd_in;
-                    Octets::new(self.tester.data(data, length, &trailer).octets()).unwrap_or_default()
+                    let (trailer, length) = match setup.role {
+                        Role::Device => {
+                            let next = self.tester().count.map_or(0, fsct_protocol::spdu::succ);
+                            ([setup.port.inverted(), fsct_protocol::spdu::inv3(next) << 5], setup.pd_in)
+                        }
+                        Role::Master => {
+                            let next =
+                                self.session.answer().map_or(0, |view| fsct_protocol::spdu::succ(view.counter()));
+                            ([setup.port.number(), next << 5], setup.pd_out)
+                        }
+                    };
+                    Octets::new(self.tester_mut().data(data, length, &trailer).octets()).unwrap_or_default()
                 }
             };
             self.session.set(*service, value)?;
@@ -433,20 +523,22 @@ impl<'s, 'd> Engine<'s, 'd> {
         let verify = matches!(&request, Stimulus::Write { index: INDEX_VERIFY, .. });
         self.session.acyclic(request)?;
         if verify && self.session.reply == Some(Reply::Written) {
-            self.session.oracle.parameterized(self.session.now);
+            let now = self.session.now;
+            self.session.link_mut().oracle.parameterized(now);
         }
         Ok(())
     }
 
     fn parameterize(&mut self) -> Result<(), Stop> {
         let profile = self.session.profile;
-        self.tester.first_copy = self.session.now;
+        let now = self.session.now;
+        self.tester_mut().first_copy = now;
         if profile.parameterization == Parameterization::None || !self.session.serves(Pco::Acyclic) {
-            self.session.oracle.parameterized(self.session.now);
+            self.session.link_mut().oracle.parameterized(now);
             return Ok(());
         }
         let io_struct_crc = self.io_struct_crc()?;
-        let records = profile.records(self.session.oracle.setup().mode, io_struct_crc);
+        let records = profile.records(self.session.setup().mode, io_struct_crc);
         for (index, data) in records {
             self.acyclic(Stimulus::Write { index, subindex: 0, data })?;
             if self.session.reply != Some(Reply::Written) {

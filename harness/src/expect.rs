@@ -1,10 +1,13 @@
 //! Expectations of a case against what was seen.
 
+mod port;
+
 use crate::case::model::{Expectation, Expected, Key};
 use crate::session::{Reply, Session};
 use crate::tester::Tester;
 use crate::trace::hex;
 use fsct_adapters::{Octets, Pco};
+use fsct_protocol::spdu::succ;
 use fsct_reports::record::Check;
 
 /// What stood before a step, for `unchanged`.
@@ -12,16 +15,18 @@ use fsct_reports::record::Check;
 pub struct Before {
     image: Option<Octets>,
     pdout_d: Option<Octets>,
-    dcount_i: Option<u8>,
+    pdin_m: Option<Octets>,
+    count: Option<u8>,
 }
 
 impl Before {
     /// What stands now.
     pub fn now(session: &Session<'_>) -> Before {
         Before {
-            image: session.image,
-            pdout_d: session.app.pdout_d,
-            dcount_i: session.answer().map(|view| view.status().dcount_i),
+            image: session.link().image,
+            pdout_d: session.link().app.pdout_d,
+            pdin_m: session.link().app.pdin_m,
+            count: session.answer().map(|view| view.counter()),
         }
     }
 }
@@ -33,15 +38,19 @@ pub fn judge(expectation: &Expectation, before: &Before, session: &Session<'_>, 
         Key::DcountI | Key::SdSet | Key::DcommErr | Key::Dtimeout => {
             answer_field(expectation, before, session, tester)?
         }
+        Key::Mcount | Key::SetSd | Key::ChFAckReq => spdu_field(expectation, before, session)?,
         Key::Pdin => pdin(expectation, session)?,
+        Key::Pdout => pdout(expectation, session)?,
         Key::Image => image(expectation, before, session),
         Key::PdoutD | Key::SetSdDc | Key::ChFAckReqDc => service(expectation, before, session, tester)?,
+        Key::PdinM | Key::SdsetS | Key::ChFAckReqS | Key::FaultsS | Key::Qualifier => {
+            gateway(expectation, before, session, tester)?
+        }
         Key::Reply => reply(expectation, session),
-        Key::Event => {
-            let wanted = number(expectation);
-            let seen: Vec<String> = session.events.iter().map(|code| format!("0x{code:04X}")).collect();
-            let seen = if seen.is_empty() { "no Event".to_owned() } else { seen.join(", ") };
-            (format!("Event 0x{wanted:04X}"), seen, session.events.iter().any(|code| u32::from(*code) == wanted))
+        Key::Event => event(expectation, session),
+        Key::Mode | Key::PortPower | Key::WakeUp | Key::Record => port::of_port(expectation, session),
+        Key::Result | Key::Reference | Key::Length | Key::Block | Key::Field(_) => {
+            port::of_result(expectation, session)
         }
     };
     Some(Check { key: expectation.key.name().to_owned(), expected, observed, met })
@@ -73,19 +82,92 @@ fn answer_field(expectation: &Expectation, before: &Before, session: &Session<'_
     });
     let expected = match expectation.value {
         Expected::Mirror => u32::from(tester.mirror()?),
-        Expected::Unchanged => u32::from(before.dcount_i?),
+        Expected::Unchanged => u32::from(before.count?),
         _ => number(expectation),
     };
     Some(compare(expected, observed))
 }
 
+fn spdu_field(expectation: &Expectation, before: &Before, session: &Session<'_>) -> Option<Judged> {
+    let control = session.answer().map(|view| view.control());
+    let observed = control.map(|control| {
+        u32::from(match expectation.key {
+            Key::Mcount => control.mcount,
+            Key::SetSd => control.set_sd.into(),
+            _ => control.ch_f_ack_req.into(),
+        })
+    });
+    let expected = match expectation.value {
+        Expected::Next => u32::from(succ(before.count?)),
+        Expected::Unchanged => u32::from(before.count?),
+        _ => number(expectation),
+    };
+    Some(compare(expected, observed))
+}
+
+fn event(expectation: &Expectation, session: &Session<'_>) -> Judged {
+    let seen: Vec<String> = session.events.iter().map(|code| format!("0x{code:04X}")).collect();
+    let seen = if seen.is_empty() { "no Event".to_owned() } else { seen.join(", ") };
+    match expectation.value {
+        Expected::None => ("no Event".to_owned(), seen, session.events.is_empty()),
+        _ => {
+            let wanted = number(expectation);
+            let met = session.events.iter().any(|code| u32::from(*code) == wanted);
+            (format!("Event 0x{wanted:04X}"), seen, met)
+        }
+    }
+}
+
+fn pdout(expectation: &Expectation, session: &Session<'_>) -> Option<Judged> {
+    let setup = session.setup();
+    if setup.pd_out == 0 || (expectation.value == Expected::Live && !session.serves(Pco::App)) {
+        return None;
+    }
+    let expected = match &expectation.value {
+        Expected::Live => hex(session.link().input.as_slice()),
+        Expected::Octets(octets) => hex(octets),
+        _ => hex(&vec![0; setup.pd_out]),
+    };
+    Some(compare(expected, session.answer().map(|view| hex(view.pd()))))
+}
+
+fn gateway(expectation: &Expectation, before: &Before, session: &Session<'_>, tester: &Tester) -> Option<Judged> {
+    if !session.serves(Pco::App) {
+        return None;
+    }
+    let app = &session.link().app;
+    let bit = match expectation.key {
+        Key::SdsetS => app.sdset_s,
+        Key::ChFAckReqS => app.ch_f_ack_req_s,
+        Key::FaultsS => app.faults_s,
+        Key::Qualifier => {
+            let word = |good: bool| if good { "GOOD" } else { "BAD" };
+            let (expected, seen) = (word(number(expectation) == 1), app.qualifier.map(word));
+            return Some((expected.to_owned(), seen.unwrap_or("not reported").to_owned(), seen == Some(expected)));
+        }
+        _ => {
+            if session.setup().pd_in == 0 && session.link().ossde.is_none() {
+                return None;
+            }
+            let expected = match &expectation.value {
+                Expected::Live => hex(tester.pd.octets()),
+                Expected::Unchanged => hex(before.pdin_m?.as_slice()),
+                Expected::Octets(octets) => hex(octets),
+                _ => hex(&vec![0; app.pdin_m.map_or(session.setup().pd_in, |pdin| pdin.as_slice().len())]),
+            };
+            return Some(compare(expected, app.pdin_m.map(|octets| hex(octets.as_slice()))));
+        }
+    };
+    Some(compare(number(expectation), bit.map(u32::from)))
+}
+
 fn pdin(expectation: &Expectation, session: &Session<'_>) -> Option<Judged> {
-    let setup = session.oracle.setup();
+    let setup = session.setup();
     if setup.pd_in == 0 || (expectation.value == Expected::Live && !session.serves(Pco::App)) {
         return None;
     }
     let expected = match &expectation.value {
-        Expected::Live => hex(session.pdin.as_slice()),
+        Expected::Live => hex(session.link().input.as_slice()),
         Expected::Octets(octets) => hex(octets),
         _ => hex(&vec![0; setup.pd_in]),
     };
@@ -97,7 +179,7 @@ fn image(expectation: &Expectation, before: &Before, session: &Session<'_>) -> J
         Some(octets) if octets.as_slice().iter().any(|octet| *octet != 0) => hex(octets.as_slice()),
         _ => "all zero or none".to_owned(),
     };
-    let observed = text(&session.image);
+    let observed = text(&session.link().image);
     match expectation.value {
         Expected::Unchanged => {
             let expected = text(&before.image);
@@ -105,7 +187,7 @@ fn image(expectation: &Expectation, before: &Before, session: &Session<'_>) -> J
             (expected, observed, met)
         }
         Expected::Answer => {
-            let reading = session.oracle.setup().reading;
+            let reading = session.setup().reading;
             let met = session.answer().is_some_and(|view| view.signature_matches(reading));
             ("an SPDU with right signature".to_owned(), observed, met)
         }
@@ -122,20 +204,20 @@ fn service(expectation: &Expectation, before: &Before, session: &Session<'_>, te
     }
     let bit = |value: Option<bool>| value.map(u32::from);
     match expectation.key {
-        Key::SetSdDc => return Some(compare(number(expectation), bit(session.app.set_sd_dc))),
-        Key::ChFAckReqDc => return Some(compare(number(expectation), bit(session.app.ch_f_ack_req_dc))),
+        Key::SetSdDc => return Some(compare(number(expectation), bit(session.link().app.set_sd_dc))),
+        Key::ChFAckReqDc => return Some(compare(number(expectation), bit(session.link().app.ch_f_ack_req_dc))),
         _ => {}
     }
-    if session.oracle.setup().pd_out == 0 {
+    if session.setup().pd_out == 0 {
         return None;
     }
     let expected = match &expectation.value {
-        Expected::Live => hex(tester.pdout.octets()),
+        Expected::Live => hex(tester.pd.octets()),
         Expected::Unchanged => hex(before.pdout_d?.as_slice()),
         Expected::Octets(octets) => hex(octets),
-        _ => hex(&vec![0; session.oracle.setup().pd_out]),
+        _ => hex(&vec![0; session.setup().pd_out]),
     };
-    Some(compare(expected, session.app.pdout_d.map(|octets| hex(octets.as_slice()))))
+    Some(compare(expected, session.link().app.pdout_d.map(|octets| hex(octets.as_slice()))))
 }
 
 fn reply(expectation: &Expectation, session: &Session<'_>) -> Judged {

@@ -1,6 +1,6 @@
 //! Everything under `testcases/`: carried in the binary, or read from a folder.
 
-use crate::case::{self, Case, Start, Suite, model::Action, model::Step};
+use crate::case::{self, Case, Covered, Start, Suite, model::Action, model::Step};
 use crate::ledger::{Class, Ledger};
 use crate::oracle::Tolerances;
 use crate::problem::{Problem, Source, suggestion};
@@ -117,20 +117,31 @@ impl Library {
         Ok(name)
     }
 
+    /// Names of suites and of groups of suites.
+    pub fn names(&self) -> std::vec::IntoIter<&str> {
+        let names = self.suites.iter().map(|suite| suite.name.as_str());
+        let groups: BTreeSet<&str> = self.suites.iter().filter_map(|suite| suite.group.as_deref()).collect();
+        names.chain(groups).collect::<Vec<_>>().into_iter()
+    }
+
     /// All cases.
     pub fn cases(&self) -> impl Iterator<Item = &Case> {
         self.suites.iter().flat_map(|suite| &suite.cases)
     }
 
     /// The steps that lead from a DUT without supply to a start condition.
-    pub fn start_steps(&self, name: &str, problems: &mut Vec<Problem>) -> Vec<Step> {
+    pub fn start_steps(&self, role: Role, name: &str, problems: &mut Vec<Problem>) -> Vec<Step> {
         let mut chain = Vec::new();
         let mut next = Some(name);
-        while let Some(start) = next.and_then(|name| self.starts.iter().find(|start| start.name == name)) {
+        while let Some(start) = next.and_then(|name| self.start(role, name)) {
             next = start.after.as_deref();
             chain.push(start);
         }
         chain.iter().rev().flat_map(|start| start.steps(problems)).collect()
+    }
+
+    fn start(&self, role: Role, name: &str) -> Option<&Start> {
+        self.starts.iter().find(|start| start.role == role && start.name == name)
     }
 
     /// Checks everything against everything, without a DUT.
@@ -169,9 +180,12 @@ impl Library {
     }
 
     fn check_case(&self, case: &Case, problems: &mut Vec<Problem>) {
-        if !self.starts.iter().any(|start| start.name == case.start) {
+        if self.start(case.role, &case.start).is_none() {
             let message = format!("case {} begins at an unknown start condition `{}`", case.id, case.start);
-            let help = suggestion(&case.start, self.starts.iter().map(|start| start.name.as_str()));
+            let help = suggestion(
+                &case.start,
+                self.starts.iter().filter(|start| start.role == case.role).map(|start| start.name.as_str()),
+            );
             problems.push(Problem::new(&case.source, case.at.clone(), message).help(help));
         }
         let expansion = match case.expand(&EVERYTHING) {
@@ -194,9 +208,12 @@ impl Library {
         } else if found.is_empty() && !checks {
             problem(format!("case {} expects nothing", case.id));
         }
-        let foreign = |number: &u8| (*number < 20) == (case.role == Role::Device);
-        if let Some(number) = case.covers.iter().find(|number| foreign(number)) {
-            problem(format!("T{number} is no transition of a {}", case.role));
+        let foreign = |covered: &&Covered| match covered {
+            Covered::Scl(number) => (*number < 20) == (case.role == Role::Device),
+            Covered::Ossde(_) => case.role == Role::Device,
+        };
+        if let Some(covered) = case.covers.iter().find(foreign) {
+            problem(format!("{covered} is no transition of a {}", case.role));
         }
         problems.extend(found);
     }
@@ -214,7 +231,7 @@ pub static EVERYTHING: [Offer; 4] = [
 fn expects(step: &Step) -> bool {
     let until = match &step.action {
         Action::Exchange(exchange) => !exchange.until.is_empty(),
-        Action::Partner(_) => true,
+        Action::Partner(_) | Action::Connect(_) => true,
         _ => false,
     };
     until || !step.expect.is_empty() || !step.remark.is_empty()
@@ -225,7 +242,8 @@ pub fn needs(steps: &[Step]) -> impl Iterator<Item = Pco> + '_ {
     steps.iter().filter_map(|step| match step.action {
         Action::Power(_) => Some(Pco::Power),
         Action::App(_) => Some(Pco::App),
-        Action::Read { .. } | Action::Write { .. } => Some(Pco::Acyclic),
+        Action::Read { .. } | Action::Write { .. } | Action::Smi(_) | Action::Raise { .. } => Some(Pco::Acyclic),
+        Action::Drive(_) => Some(Pco::Line),
         _ => None,
     })
 }

@@ -1,15 +1,25 @@
-//! The virtual FS-Master as a conformant partner: Table 38 interpreted, over the link as it is.
+//! A conformant partner on the link: an FS-Master by Table 38 on an FS-Device, an FS-Device by Table 40 on an FS-Master;
+//! and the operator.
 
 use crate::case::model::{From, Operator};
+use crate::keeper::Keeper;
 use crate::session::{Session, Stop};
 use crate::tester::Tester;
-use fsct_adapters::Octets;
+use fsct_adapters::{Octets, Pco, Role, Service};
 use fsct_protocol::scl::master::Answer;
 use fsct_protocol::scl::{Master, Var};
 use fsct_protocol::spdu::{OutSpdu, Pd, succ};
 
-/// A conformant FS-Master on the link.
-pub struct Partner {
+/// A conformant partner.
+pub enum Partner {
+    /// An FS-Master.
+    Master(VirtualMaster),
+    /// An FS-Device, and the operator at the gateway of the DUT.
+    Device(Box<Keeper>, Operator),
+}
+
+/// A conformant FS-Master.
+pub struct VirtualMaster {
     master: Master,
     operator: Operator,
     /// When MTimer was started, in nanoseconds.
@@ -20,6 +30,68 @@ pub struct Partner {
 impl Partner {
     /// Takes over from the scripted tester.
     pub fn new(from: From, operator: Operator, session: &Session<'_>, tester: &mut Tester) -> Partner {
+        let setup = session.setup();
+        match (setup.role, from, tester.answered) {
+            (Role::Device, ..) => Partner::Master(VirtualMaster::new(from, operator, session, tester)),
+            (Role::Master, From::Next | From::Zero, Some(answered)) => {
+                let pdin = Pd::new(&tester.pattern(setup.pd_in)).unwrap_or(Pd::safe(setup.pd_in));
+                Partner::Device(Box::new(Keeper::regular(setup, pdin, answered, session.now)), operator)
+            }
+            (Role::Master, ..) => {
+                let pdin = Pd::new(&tester.pattern(setup.pd_in)).unwrap_or(Pd::safe(setup.pd_in));
+                Partner::Device(Box::new(Keeper::started(setup, pdin)), operator)
+            }
+        }
+    }
+
+    /// One exchange, and what the partner makes of it.
+    ///
+    /// # Errors
+    /// [`Stop`] when the case cannot go on.
+    pub fn exchange(&mut self, session: &mut Session<'_>, tester: &mut Tester) -> Result<(), Stop> {
+        match self {
+            Partner::Master(master) => master.exchange(session, tester),
+            Partner::Device(keeper, operator) => {
+                operate(*operator, session)?;
+                session.exchange(keeper.octets())?;
+                let link = session.link();
+                keeper.received(session.now, link.image.as_ref(), link.oracle.setup());
+                tester.follow(keeper, session.now);
+                Ok(())
+            }
+        }
+    }
+
+    /// Regular operation as both sides see it: live data both ways, no error, no safe data.
+    pub fn operates(&self, session: &Session<'_>, tester: &Tester) -> bool {
+        match self {
+            Partner::Master(master) => master.operates(session, tester),
+            Partner::Device(keeper, _) => {
+                let app = &session.link().app;
+                let control = session.answer().map(|view| view.control());
+                let live = |pdin: Octets| pdin.as_slice() == keeper.sent().octets();
+                control.is_some_and(|control| !control.set_sd && !control.ch_f_ack_req)
+                    && app.sdset_s != Some(true)
+                    && app.qualifier != Some(false)
+                    && app.pdin_m.is_none_or(live)
+                    && keeper.operates()
+            }
+        }
+    }
+}
+
+/// The operator at the gateway of an FS-Master: released until asked for, so that the change from 0 to 1 is seen.
+fn operate(operator: Operator, session: &mut Session<'_>) -> Result<(), Stop> {
+    let link = session.link();
+    let asked = operator == Operator::Acknowledges && link.app.ch_f_ack_req_s == Some(true);
+    if link.ack != asked && session.serves(Pco::App) {
+        session.set(Service::ChfackC, Octets::bit(asked))?;
+    }
+    Ok(())
+}
+
+impl VirtualMaster {
+    fn new(from: From, operator: Operator, session: &Session<'_>, tester: &mut Tester) -> VirtualMaster {
         let master = match (from, tester.count) {
             (From::Start, _) | (_, None) => {
                 let mut master = Master::new();
@@ -29,18 +101,14 @@ impl Partner {
             (From::Next, Some(count)) => Master::after_fault(succ(count)),
             (From::Zero, _) => Master::after_fault(0),
         };
-        let mut partner = Partner { master, operator, timer: session.now, octets: None };
+        let mut partner = VirtualMaster { master, operator, timer: session.now, octets: None };
         partner.emit(session, tester);
         partner
     }
 
-    /// One exchange, and what the FS-Master makes of the answer.
-    ///
-    /// # Errors
-    /// [`Stop`] when the case cannot go on.
-    pub fn exchange(&mut self, session: &mut Session<'_>, tester: &mut Tester) -> Result<(), Stop> {
+    fn exchange(&mut self, session: &mut Session<'_>, tester: &mut Tester) -> Result<(), Stop> {
         session.exchange(self.octets)?;
-        let setup = session.oracle.setup();
+        let setup = session.setup();
         let answer = session.answer().map(|view| Answer {
             status: view.status(),
             intact: view.signature_matches(setup.reading) && view.port_num() == setup.port.inverted(),
@@ -51,7 +119,7 @@ impl Partner {
         let taken = answer.is_some_and(|answer| !self.master.receive(answer).is_empty());
         let expired = !taken
             && self.master.timer_runs()
-            && session.now >= self.timer + session.oracle.setup().watchdog_ns
+            && session.now >= self.timer + setup.watchdog_ns
             && !self.master.expire().is_empty();
         if taken || expired {
             if self.master.timer_restarted() {
@@ -62,19 +130,18 @@ impl Partner {
         Ok(())
     }
 
-    /// Regular operation as both sides see it: live data both ways, no error, no safe data.
-    pub fn operates(&self, session: &Session<'_>, tester: &Tester) -> bool {
+    fn operates(&self, session: &Session<'_>, tester: &Tester) -> bool {
         let settled = session.answer().is_some_and(|view| {
             let status = view.status();
             !status.sd_set && !status.d_comm_err && !status.d_timeout
         });
-        let live = |pdout: Octets| tester.pdout.is_safe() || pdout.as_slice().iter().any(|octet| *octet != 0);
-        let live = session.app.pdout_d.is_none_or(live);
+        let live = |pdout: Octets| tester.pd.is_safe() || pdout.as_slice().iter().any(|octet| *octet != 0);
+        let live = session.link().app.pdout_d.is_none_or(live);
         self.master.state().0 == 5 && !self.master.control().set_sd && self.master.get(Var::In) == 1 && settled && live
     }
 
     fn emit(&mut self, session: &Session<'_>, tester: &mut Tester) {
-        let setup = session.oracle.setup();
+        let setup = session.setup();
         let pd = if self.master.uses_pdout() {
             Pd::new(&tester.pattern(setup.pd_out)).unwrap_or(Pd::safe(setup.pd_out))
         } else {
@@ -83,7 +150,7 @@ impl Partner {
         let spdu = OutSpdu { pd, port: setup.port, control: self.master.control() };
         self.octets = Octets::new(spdu.wire().emit(setup.mode, setup.reading).octets());
         tester.count = Some(spdu.control.mcount);
-        tester.pdout = pd;
+        tester.pd = pd;
         tester.octets = self.octets;
         tester.first_copy = session.now + session.profile.master_cycle_time_ns;
     }

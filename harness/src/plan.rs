@@ -30,7 +30,7 @@ pub struct Plan<'l> {
 /// What the user asked for.
 #[derive(Clone, Debug, Default)]
 pub struct Selection {
-    /// Names of suites; empty: all.
+    /// Names of suites or of groups of suites; empty: all.
     pub suites: Vec<String>,
     /// Terms that all have to match: see [`Selection::matches`].
     pub filter: Vec<String>,
@@ -45,12 +45,15 @@ impl Selection {
     /// title, with `*` for anything in between.
     pub fn matches(&self, planned: &Planned<'_>) -> bool {
         let Planned { case, key, binding } = planned;
-        (self.suites.is_empty() || self.suites.contains(&case.suite))
+        let group = case.group.as_ref();
+        (self.suites.is_empty()
+            || self.suites.contains(&case.suite)
+            || group.is_some_and(|group| self.suites.contains(group)))
             && self.edition.is_none_or(|edition| binding.variant.edition == edition)
             && self.filter.iter().all(|term| match term.split_once(':') {
-                Some(("suite", name)) => case.suite == name,
+                Some(("suite", name)) => case.suite == name || group.is_some_and(|group| group == name),
                 Some(("req", id)) => case.requirements.iter().any(|known| known == id),
-                Some(("covers", t)) => case.covers.iter().any(|number| format!("T{number}") == t),
+                Some(("covers", t)) => case.covers.iter().any(|covered| covered.to_string() == t),
                 _ => occurs(key, term) || occurs(&case.title, term),
             })
     }
@@ -78,7 +81,9 @@ pub fn plan<'l>(
     description: &Description,
 ) -> Result<Plan<'l>, Problem> {
     let mut plan = Plan::default();
-    for case in library.cases() {
+    // Whoever names nothing wants what the DUT is for; whoever names something is told why it does not apply.
+    let all = selection.suites.is_empty() && selection.filter.is_empty();
+    for case in library.cases().filter(|case| !all || case.role == description.role) {
         let expansion = case.expand(&description.offers)?;
         for binding in expansion.points {
             let key = format!("{}{}", case.id, binding.key());
@@ -109,6 +114,10 @@ pub fn plan<'l>(
     Ok(plan)
 }
 
+fn steps_of(case: &Case, binding: &Binding) -> Vec<crate::case::model::Step> {
+    case.steps(binding, &mut Vec::new())
+}
+
 /// The term that excludes a case, if one does.
 fn excluded(library: &Library, profile: &Profile, description: &Description, planned: &Planned<'_>) -> Option<String> {
     let Planned { case, binding, .. } = planned;
@@ -120,19 +129,31 @@ fn excluded(library: &Library, profile: &Profile, description: &Description, pla
     if !records.is_empty() && records.iter().all(|record| !record.exists_in(edition)) {
         return Some(format!("its requirements do not exist in {edition}"));
     }
+    let most = steps_of(case, binding).iter().map(|step| step.port).max().unwrap_or(1);
+    if most > description.ports {
+        return Some(format!("it takes {most} ports, the DUT has {}", description.ports));
+    }
+    if let Some(feature) = case.features.iter().find(|feature| !profile.features.contains(feature)) {
+        return Some(format!("the profile does not list the feature `{feature}`"));
+    }
     if let Some(feature) =
         records.iter().filter_map(|record| record.applies.as_ref()).find(|f| !profile.features.contains(f))
     {
         return Some(format!("the profile does not list the feature `{feature}`"));
     }
-    if let Some(pco) = [Pco::Power, Pco::Link].into_iter().find(|pco| !description.pcos.contains(pco)) {
+    let always: &[Pco] = match description.role {
+        Role::Device => &[Pco::Power, Pco::Link],
+        // Without the gateway nobody can acknowledge.
+        Role::Master => &[Pco::Power, Pco::Link, Pco::App],
+    };
+    if let Some(pco) = always.iter().find(|pco| !description.pcos.contains(pco)) {
         return Some(format!("the DUT does not serve `{}`, so no start condition can be reached", pco.name()));
     }
     if profile.parameterization == Parameterization::None && case.needs.contains(&Pco::Acyclic) {
         return Some("the profile says that the product starts its SCL by itself".to_owned());
     }
     // Start conditions do without on-request data and application; the steps of a case cannot.
-    let steps = case.steps(binding, &mut Vec::new());
+    let steps = steps_of(case, binding);
     let missing = case.needs.iter().copied().chain(needs(&steps)).find(|pco| !description.pcos.contains(pco));
     missing.map(|pco| format!("the DUT does not serve `{}`", pco.name()))
 }

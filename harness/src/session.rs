@@ -1,12 +1,15 @@
 //! One case's hold on the DUT: stimuli go out, observations come in, the oracle sees every exchange.
 
-use crate::oracle::{App, DeviceOracle, Mismatch};
+use crate::link::Link;
+use crate::oracle::{Mask, Mismatch, Setup};
 use crate::profile::Profile;
 use crate::trace::{Margin, Told};
 use fsct_adapters::{
-    ClockKind, Description, Dut, DutError, Keep, Observation, Octets, Pco, Recorder, Seen, Service, Stimulus,
+    ClockKind, Description, Dut, DutError, Keep, Mode, Observation, Octets, Pco, Recorder, Role, Seen, Service,
+    SmiRequest, SmiResult, Stimulus,
 };
 use fsct_protocol::spdu::View;
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -58,8 +61,10 @@ pub struct Session<'d> {
     pub description: &'d Description,
     /// Profile in force.
     pub profile: &'d Profile,
-    /// The oracle.
-    pub oracle: DeviceOracle,
+    /// The ports of the DUT: one link each.
+    pub links: Vec<Link>,
+    /// The link the case is about at the moment.
+    current: usize,
     /// What stands beside the recording.
     pub margin: Margin,
     /// The clock of the DUT when the case began, once it is known.
@@ -76,16 +81,12 @@ pub struct Session<'d> {
     pub now: u64,
     /// Zero point and next due time of a real clock.
     pace: Option<(Instant, Instant)>,
-    /// The image presented last.
-    pub image: Option<Octets>,
-    /// Application services as reported last.
-    pub app: App,
     /// Answer to the latest read or write.
     pub reply: Option<Reply>,
+    /// The latest request through the SMI, and its result.
+    pub smi: Option<(SmiRequest, Option<SmiResult>)>,
     /// EventCodes seen since the step began.
     pub events: Vec<u16>,
-    /// PDin_D as set last.
-    pub pdin: Octets,
     observed: Vec<Observation>,
 }
 
@@ -95,16 +96,17 @@ impl<'d> Session<'d> {
         dut: &'d mut dyn Dut,
         description: &'d Description,
         profile: &'d Profile,
-        oracle: DeviceOracle,
+        setups: Vec<Setup>,
         interrupted: &'d AtomicBool,
     ) -> Session<'d> {
-        let pdin = Octets::zero(oracle.setup().pd_in);
+        let links = (1..).zip(setups).map(|(port, setup)| Link::new(port, setup)).collect();
         let start = Instant::now();
         Session {
             dut: Recorder::new(dut, Keep::default()),
             description,
             profile,
-            oracle,
+            links,
+            current: 0,
             margin: Margin::default(),
             zero: None,
             slipped: false,
@@ -113,11 +115,9 @@ impl<'d> Session<'d> {
             interrupted,
             now: 0,
             pace: (description.clock.kind == ClockKind::Real).then_some((start, start)),
-            image: None,
-            app: App::default(),
             reply: None,
+            smi: None,
             events: Vec::new(),
-            pdin,
             observed: Vec::new(),
         }
     }
@@ -127,28 +127,109 @@ impl<'d> Session<'d> {
         self.description.pcos.contains(&pco)
     }
 
-    /// Supply on or off; `false`: the DUT does not serve it.
+    /// The link the case is about at the moment.
+    pub fn link(&self) -> &Link {
+        // There is one link at least, and `current` is one of them.
+        &self.links[self.current]
+    }
+
+    /// The same, to be changed.
+    pub fn link_mut(&mut self) -> &mut Link {
+        &mut self.links[self.current]
+    }
+
+    /// Turns to another port; `false` when the DUT has no such port.
+    pub fn turn_to(&mut self, port: u8) -> bool {
+        let found = self.links.iter().position(|link| link.port == port);
+        self.current = found.unwrap_or(self.current);
+        found.is_some()
+    }
+
+    /// What the oracle of the link judges by.
+    pub fn setup(&self) -> &Setup {
+        self.link().oracle.setup()
+    }
+
+    /// Which side of the link the DUT is on.
+    pub const fn role(&self) -> Role {
+        self.description.role
+    }
+
+    /// Supply on or off.
     ///
     /// # Errors
     /// [`Stop`] when the case cannot go on.
     pub fn power(&mut self, on: bool) -> Result<(), Stop> {
-        self.oracle.power(on);
-        self.app = App::default();
-        self.pdin = Octets::zero(self.oracle.setup().pd_in);
-        self.image = None;
+        self.links.iter_mut().for_each(|link| link.power(on));
         self.apply(&[Stimulus::Power(on)])
     }
 
-    /// Sets an input service of the application.
+    /// Sets an input service of the application, on the link or (FSCP_Authenticity) for the whole DUT.
     ///
     /// # Errors
     /// [`Stop`] when the case cannot go on.
     pub fn set(&mut self, service: Service, value: Octets) -> Result<(), Stop> {
-        self.oracle.input(service, &value);
-        if service == Service::PdinD {
-            self.pdin = value;
+        self.link_mut().set(service, value);
+        let port = if service == Service::FscpAuthenticity { 0 } else { self.link().port };
+        self.apply(&[Stimulus::Set { port, service, value }])
+    }
+
+    /// Does something to a port; what it leads to stands in the link.
+    ///
+    /// # Errors
+    /// [`Stop`] when the case cannot go on.
+    pub fn act(&mut self, stimulus: Stimulus) -> Result<(), Stop> {
+        self.apply(&[stimulus])
+    }
+
+    /// A request through the SMI; the result stands in `smi`.
+    ///
+    /// # Errors
+    /// [`Stop`] when the case cannot go on.
+    pub fn request(&mut self, request: SmiRequest) -> Result<(), Stop> {
+        self.smi = Some((request.clone(), None));
+        self.apply(&[Stimulus::Smi(Box::new(request))])
+    }
+
+    /// Time passes without an exchange on the link; other ports in operation go on.
+    ///
+    /// # Errors
+    /// [`Stop`] when the case cannot go on.
+    pub fn pass(&mut self, ns: u64) -> Result<(), Stop> {
+        let until = self.now + ns;
+        while self.now < until {
+            let kept = self.kept();
+            let rest = until - self.now;
+            let part = if kept { rest.min(self.profile.master_cycle_time_ns) } else { rest };
+            let mut stimuli = Vec::new();
+            if !self.wait_for_turn(part) {
+                stimuli.push(Stimulus::Advance { ns: part });
+            }
+            self.keep(&mut stimuli);
+            if stimuli.is_empty() {
+                // A real clock without anything to say to the DUT: what it has done meanwhile comes with the next stimulus.
+                stimuli.push(Stimulus::Drive {
+                    port: self.link().port,
+                    line: fsct_adapters::Line::Cq,
+                    level: self.link().levels.0,
+                });
+            }
+            self.apply(&stimuli)?;
         }
-        self.apply(&[Stimulus::Set { port: 1, service, value }])
+        Ok(())
+    }
+
+    /// Whether a port other than the current one is in operation.
+    fn kept(&self) -> bool {
+        self.links.len() > 1 && (0..).zip(&self.links).any(|(index, link)| index != self.current && link.is_kept())
+    }
+
+    /// The exchanges of the other ports in operation.
+    fn keep(&mut self, stimuli: &mut Vec<Stimulus>) {
+        if self.kept() {
+            let others = (0..).zip(&self.links).filter(|(index, link)| *index != self.current && link.is_kept());
+            stimuli.extend(others.map(|(_, link)| Stimulus::Exchange { port: link.port, octets: link.kept_octets() }));
+        }
     }
 
     /// Reads or writes on-request data; the answer stands in `reply`.
@@ -173,13 +254,23 @@ impl<'d> Session<'d> {
     /// # Errors
     /// [`Stop`] when the case cannot go on.
     pub fn exchange_after(&mut self, ns: u64, octets: Option<Octets>) -> Result<(), Stop> {
-        let exchange = Stimulus::Exchange { port: 1, octets };
-        match self.wait_for_turn(ns) {
-            true => {
-                self.planned = self.planned.map(|(last, _)| (last, ns));
-                self.apply(&[exchange])
+        let exchange = Stimulus::Exchange { port: self.link().port, octets };
+        let paced = self.wait_for_turn(ns);
+        if paced {
+            self.planned = self.planned.map(|(last, _)| (last, ns));
+        }
+        match (paced, self.kept()) {
+            (true, false) => self.apply(&[exchange]),
+            (false, false) => self.apply(&[Stimulus::Advance { ns }, exchange]),
+            (_, true) => {
+                let mut stimuli = Vec::new();
+                if !paced {
+                    stimuli.push(Stimulus::Advance { ns });
+                }
+                stimuli.push(exchange);
+                self.keep(&mut stimuli);
+                self.apply(&stimuli)
             }
-            false => self.apply(&[Stimulus::Advance { ns }, exchange]),
         }
     }
 
@@ -190,7 +281,7 @@ impl<'d> Session<'d> {
     pub fn exchange_until(&mut self, until: u64, octets: Option<Octets>) -> Result<(), Stop> {
         let cycle = self.profile.master_cycle_time_ns;
         while self.now < until {
-            if self.pace.is_some() {
+            if self.pace.is_some() || self.kept() {
                 self.exchange_after(cycle.min(until - self.now), octets)?;
                 continue;
             }
@@ -200,7 +291,7 @@ impl<'d> Session<'d> {
                 let ns = cycle.min(until - at);
                 at += ns;
                 batch.push(Stimulus::Advance { ns });
-                batch.push(Stimulus::Exchange { port: 1, octets });
+                batch.push(Stimulus::Exchange { port: self.link().port, octets });
             }
             self.apply(&batch)?;
         }
@@ -244,9 +335,15 @@ impl<'d> Session<'d> {
             while let Some((observation, later)) = rest.split_first()
                 && usize::from(observation.stimulus) == index
             {
+                if self.links.iter().any(|link| link.ossde.is_some()) {
+                    self.settle(observation.at.saturating_sub(self.zero.unwrap_or(0)))?;
+                }
                 rest = later;
                 self.digest_one(stimulus, observation)?;
             }
+        }
+        if self.links.iter().any(|link| link.ossde.is_some()) {
+            self.settle(u64::MAX)?;
         }
         Ok(())
     }
@@ -262,38 +359,50 @@ impl<'d> Session<'d> {
             }
         };
         match &observation.seen {
-            Seen::Image { octets, .. } => {
+            Seen::Image { port, octets } => {
                 let Stimulus::Exchange { octets: sent, .. } = stimulus else { return Ok(()) };
-                self.image = *octets;
-                let sent = sent.as_ref().map(Octets::as_slice);
-                let image = octets.as_ref().map(Octets::as_slice);
-                let verdict = self.oracle.exchange(at, sent, image, &self.app);
+                let current = self.link().port == *port;
+                let Some(link) = self.links.iter_mut().find(|link| link.port == *port) else { return Ok(()) };
+                let verdict = link.exchange(at, sent.as_ref(), *octets);
+                let via = link.oracle.via();
                 self.last_exchange = observation.at.saturating_sub(zero);
-                if self.pace.is_some() {
+                if self.pace.is_some() && current {
                     let slack = self.profile.master_cycle_time_ns / 2;
                     self.slipped |= self.planned.is_some_and(|(last, ns)| at > last + ns + slack);
                     self.planned = Some((at, 0));
                 }
-                self.margin.exchange(observation.at, self.oracle.via());
+                self.margin.exchange(observation.at, via, current);
                 verdict?;
             }
-            Seen::Service { service, value, .. } => match service {
-                Service::PdoutD => self.app.pdout_d = Some(*value),
-                Service::SetsdDc => self.app.set_sd_dc = Some(value.is_set()),
-                Service::ChfackreqDc => self.app.ch_f_ack_req_dc = Some(value.is_set()),
-                Service::SclFault => self.app.scl_fault = Some(value.is_set()),
-                _ => {}
-            },
+            Seen::Service { port, service, value } => {
+                if let Some(link) = self.links.iter_mut().find(|link| link.port == *port) {
+                    link.report(*service, *value, observation.at.saturating_sub(zero));
+                }
+            }
+            Seen::Mode { port, .. } | Seen::Request { port, .. } | Seen::Line { port, .. } => {
+                match self.links.iter_mut().find(|link| link.port == *port) {
+                    Some(link) => link.base(at, &observation.seen),
+                    None => {
+                        let what = format!("an observation on port {port}, of {} ports", self.links.len());
+                        return Err(Stop::Dut(DutError::Contract { what }));
+                    }
+                }
+            }
+            Seen::Indication { code, .. } => self.events.push(*code),
+            Seen::Smi(result) => {
+                if let Some((_, slot)) = &mut self.smi {
+                    *slot = Some((**result).clone());
+                }
+            }
             Seen::Value(data) => self.reply = Some(Reply::Value(data.clone())),
             Seen::Written => self.reply = Some(Reply::Written),
             Seen::Refused { error } => self.reply = Some(Reply::Refused(*error)),
             Seen::Event { code, .. } => {
                 self.events.push(*code);
             }
-            Seen::Mode { .. } | Seen::Request { .. } | Seen::Line { .. } | Seen::Smi(_) | Seen::Indication { .. } => {}
             Seen::Unsupported => match stimulus {
                 Stimulus::Read { .. } | Stimulus::Write { .. } => self.reply = Some(Reply::Unsupported),
-                Stimulus::Other { .. } => {}
+                Stimulus::Other { .. } | Stimulus::Smi(_) => {}
                 other => return Err(Stop::Unserved(format!("the DUT does not serve {}", crate::trace::name(other)))),
             },
         }
@@ -312,8 +421,35 @@ impl<'d> Session<'d> {
 
     /// The image presented last, read as an SPDU; `None` when it is none, too short or all zero.
     pub fn answer(&self) -> Option<View<'_>> {
-        let setup = self.oracle.setup();
-        let view = View::new(self.image.as_ref()?.as_slice(), setup.mode, setup.pd_in).ok()?;
-        (!view.is_all_zero()).then_some(view)
+        self.link().answer()
+    }
+
+    /// Looks at what services of OSSDe ports have come to before this observation.
+    fn settle(&mut self, upto: u64) -> Result<(), Stop> {
+        for link in &mut self.links {
+            link.settle(upto)?;
+        }
+        Ok(())
+    }
+
+    /// The mode an FS-Master commands on the link.
+    pub fn mode(&self) -> Mode {
+        self.link().mode
+    }
+
+    /// How often each transition was taken on any port, by the names of the record.
+    pub fn taken(&self) -> BTreeMap<String, u64> {
+        let mut sum = BTreeMap::new();
+        for link in &self.links {
+            let scl = link.oracle.taken().into_iter().map(|(number, count)| (format!("T{number}"), count));
+            let ossde = link.ossde_taken().map(|(number, count)| (format!("OSSDe T{number}"), count));
+            scl.chain(ossde).for_each(|(name, count)| *sum.entry(name).or_default() += count);
+        }
+        sum
+    }
+
+    /// Tolerances the DUT made use of on any port.
+    pub fn used(&self) -> Mask {
+        self.links.iter().fold(Mask::NONE, |mask, link| mask.union(link.oracle.used()))
     }
 }

@@ -1,11 +1,12 @@
-//! The lower tester against an FS-Device: builds the SPDUs a case asks for, legal and illegal.
+//! The lower tester: builds the SPDUs a case asks for, legal and illegal, as FS-Master or as FS-Device.
 
 use crate::case::model::{Corrupt, Count, Data, Exchange, Field, Image, PortNum, Signature};
+use crate::keeper::Keeper;
 use crate::oracle::Setup;
-use fsct_adapters::Octets;
+use fsct_adapters::{Octets, Role};
 use fsct_protocol::ProtMode;
 use fsct_protocol::crc::{Reading, crc16, crc32, signature};
-use fsct_protocol::spdu::{Control, Pd, Wire, inv3, succ};
+use fsct_protocol::spdu::{Pd, Wire, inv3, succ};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng;
 
@@ -13,10 +14,12 @@ use rand_pcg::rand_core::Rng;
 pub struct Tester {
     setup: Setup,
     rng: Pcg64Mcg,
-    /// MCount of the SPDU sent last.
+    /// MCount or DCount_i of the SPDU sent last.
     pub count: Option<u8>,
-    /// FS-PDout sent last.
-    pub pdout: Pd,
+    /// MCount of the SPDU of an FS-Master that was answered last.
+    pub answered: Option<u8>,
+    /// Process data sent last.
+    pub pd: Pd,
     /// Octets sent last; `None`: nothing.
     pub octets: Option<Octets>,
     /// When the first copy of the SPDU sent last went out, in nanoseconds.
@@ -26,13 +29,26 @@ pub struct Tester {
 impl Tester {
     /// A tester that has sent nothing.
     pub fn new(setup: &Setup, rng: Pcg64Mcg) -> Tester {
-        Tester { pdout: Pd::safe(setup.pd_out), setup: setup.clone(), rng, count: None, octets: None, first_copy: 0 }
+        let pd = Pd::safe(setup.sent_pd());
+        Tester { pd, setup: setup.clone(), rng, count: None, answered: None, octets: None, first_copy: 0 }
     }
 
     /// Forgets what was sent: the DUT has been switched off.
     pub fn restart(&mut self) {
         self.count = None;
+        self.answered = None;
         self.octets = None;
+    }
+
+    /// A virtual FS-Device has taken over: the tester goes on from what it sent.
+    pub fn follow(&mut self, keeper: &Keeper, now: u64) {
+        if self.octets != keeper.octets() {
+            self.first_copy = now;
+        }
+        self.octets = keeper.octets();
+        self.pd = keeper.sent();
+        self.answered = keeper.answered();
+        self.count = self.answered.map(inv3);
     }
 
     /// Octets of a pattern: none of them 0, from the seed.
@@ -40,12 +56,19 @@ impl Tester {
         (0..length).map(|_| 1 + (self.rng.next_u32() % 255) as u8).collect()
     }
 
-    /// Builds the octets of the next exchange, with a note on what is wrong with them.
-    pub fn build(&mut self, exchange: &Exchange, echo: Option<Octets>) -> (Option<Octets>, String) {
-        let mcount = match exchange.mcount {
-            Count::Next => self.count.map_or(0, succ),
+    /// Builds the octets of the next exchange, with a note on what is wrong with them. `echo` is what the DUT presents,
+    /// `shown` the counter in it.
+    pub fn build(&mut self, exchange: &Exchange, echo: Option<Octets>, shown: Option<u8>) -> (Option<Octets>, String) {
+        let next = match self.setup.role {
+            Role::Device => self.count.map_or(0, succ),
+            Role::Master => shown.unwrap_or(0),
+        };
+        let jump = |more: u8| (0..more).fold(next, |count, _| succ(count));
+        let mirrored = |mcount: u8| if self.setup.role == Role::Device { mcount } else { inv3(mcount) };
+        let count = match exchange.count {
+            Count::Next => mirrored(next),
             Count::Same => self.count.unwrap_or(0),
-            Count::Jump(more) => (0..more).fold(self.count.map_or(0, succ), |count, _| succ(count)),
+            Count::Jump(more) => mirrored(jump(more)),
             Count::Exactly(count) => count,
         };
         match &exchange.image {
@@ -64,27 +87,24 @@ impl Tester {
                 return self.instead(Octets::new(octets).unwrap_or_default(), "octets of the case");
             }
         }
-        let control = Control { mcount, set_sd: exchange.set_sd, ch_f_ack_req: exchange.ch_f_ack_req };
+        let (port, own) = (self.setup.port.number(), self.setup.sent_port());
         let port_num = match exchange.port_num {
-            PortNum::Own => self.setup.port.number(),
-            PortNum::Inverted => self.setup.port.inverted(),
+            PortNum::Own => own,
+            PortNum::Inverted => !own,
             PortNum::Foreign => {
-                if self.setup.port.number() == 255 {
-                    254
-                } else {
-                    self.setup.port.number() + 1
-                }
+                let other = if port == 255 { 254 } else { port + 1 };
+                if self.setup.role == Role::Device { other } else { !other }
             }
             PortNum::Exactly(octet) => octet,
         };
-        let octet = control.to_octet() | exchange.reserved << 2;
-        let pd = self.data(&exchange.pdout, self.setup.pd_out, &[port_num, octet]);
+        let octet = count << 5 | exchange.bits;
+        let pd = self.data(&exchange.pd, self.setup.sent_pd(), &[port_num, octet]);
         let mut notes = Vec::new();
         let signature = self.signature(exchange.signature, &pd, port_num, octet);
         if exchange.signature != Signature::Good {
             notes.push(format!("signature {:?}", exchange.signature).to_lowercase());
         }
-        if port_num != self.setup.port.number() {
+        if port_num != own {
             notes.push(format!("PortNum {port_num:02X}"));
         }
         let wire = Wire { pd, port_num, octet, signature };
@@ -95,8 +115,9 @@ impl Tester {
                 notes.push(format!("bit {bit} inverted"));
             }
         }
-        self.count = Some(mcount);
-        self.pdout = pd;
+        self.count = Some(count);
+        self.answered = shown;
+        self.pd = pd;
         self.octets = Octets::new(emitted.octets());
         (self.octets, notes.join(", "))
     }
@@ -105,7 +126,7 @@ impl Tester {
     pub fn data(&mut self, data: &Data, length: usize, trailer: &[u8]) -> Pd {
         let octets = match data {
             Data::Pattern => self.pattern(length),
-            Data::Same => return self.pdout,
+            Data::Same => return self.pd,
             Data::Exactly(octets) => {
                 let skip = octets.len().saturating_sub(length);
                 let mut padded = vec![0; length.saturating_sub(octets.len())];
@@ -119,14 +140,14 @@ impl Tester {
         Pd::new(&octets).unwrap_or(Pd::safe(length))
     }
 
-    /// DCount_i that mirrors the octets sent last; `None` when they are no SPDU.
+    /// The mirror of the counter in the octets sent last; `None` when they are no SPDU.
     pub fn mirror(&self) -> Option<u8> {
         let octets = self.octets.as_ref()?;
-        octets.as_slice().get(self.setup.pd_out + 1).map(|octet| inv3(octet >> 5))
+        octets.as_slice().get(self.setup.sent_pd() + 1).map(|octet| inv3(octet >> 5))
     }
 
     fn length(&self) -> usize {
-        self.setup.mode.spdu_octets(self.setup.pd_out)
+        self.setup.mode.spdu_octets(self.setup.sent_pd())
     }
 
     fn instead(&mut self, octets: Octets, note: &str) -> (Option<Octets>, String) {
@@ -159,14 +180,15 @@ impl Tester {
     }
 
     fn bits(&mut self, corrupt: &Corrupt) -> Vec<usize> {
-        let pd = 8 * self.setup.pd_out;
+        let pd = 8 * self.setup.sent_pd();
         let (from, count) = match corrupt {
             Corrupt::Nothing => return Vec::new(),
             Corrupt::Bits(bits) => return bits.clone(),
             Corrupt::Field(Field::Data) if pd > 0 => (0, pd),
             Corrupt::Field(Field::Data | Field::Signature) => (pd + 16, 8 * self.setup.mode.signature_octets()),
             Corrupt::Field(Field::PortNum) => (pd, 8),
-            Corrupt::Field(Field::Control) => (pd + 14, 2),
+            Corrupt::Field(Field::Control) if self.setup.role == Role::Device => (pd + 14, 2),
+            Corrupt::Field(Field::Control) => (pd + 13, 3),
         };
         vec![from + self.rng.next_u32() as usize % count]
     }

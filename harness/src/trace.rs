@@ -2,7 +2,6 @@
 //! tester's notes beside it.
 
 use fsct_adapters::{Answer, Happened, Line, Octets, Recording, Response, Seen, Service, Stimulus};
-use fsct_protocol::scl::T;
 use fsct_reports::record::{Entry, What};
 use std::collections::VecDeque;
 
@@ -31,11 +30,9 @@ impl Margin {
         self.next = text;
     }
 
-    /// Notes the transitions the DUT took in the exchange at this time.
-    pub fn exchange(&mut self, at: u64, via: impl Iterator<Item = T>) {
-        let mut taken = [0; 8];
-        taken.iter_mut().zip(via).for_each(|(slot, t)| *slot = t.0);
-        let text = std::mem::take(&mut self.next);
+    /// Notes the transitions the DUT took in the exchange at this time; `current`: on the link the tester announced for.
+    pub fn exchange(&mut self, at: u64, taken: [u8; 8], current: bool) {
+        let text = if current { std::mem::take(&mut self.next) } else { String::new() };
         if taken == [0; 8] && text.is_empty() {
             return;
         }

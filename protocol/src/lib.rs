@@ -7,6 +7,7 @@ pub mod crc;
 mod edition;
 pub mod fsp;
 pub mod scl;
+pub mod smi;
 pub mod spdu;
 
 pub use edition::{Edition, ProtMode, UnknownName};

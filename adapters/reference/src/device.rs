@@ -23,7 +23,7 @@ pub(crate) const PORT: u8 = 1;
 const ERROR_APPEARS: u8 = 0xF4;
 
 /// How far a time stamp of the real clock may be off: a stimulus may wait that long inside the process.
-const REAL_UNCERTAINTY_NS: u64 = 100_000;
+pub(crate) const REAL_UNCERTAINTY_NS: u64 = 100_000;
 
 /// What the device is before any `Configure`.
 pub(crate) const DEFAULT_VARIANT: Variant =
@@ -263,7 +263,7 @@ impl Session {
 
 /// The answer image on its way to the line: what is put in comes out `latency` exchanges later, zeros before.
 #[derive(Debug)]
-struct Pipeline {
+pub(crate) struct Pipeline {
     /// The image of a device whose SCL does not send.
     silent: Octets,
     images: [Octets; Options::MAX_LATENCY as usize],
@@ -272,11 +272,11 @@ struct Pipeline {
 }
 
 impl Pipeline {
-    fn new(silent: Octets, latency: u8) -> Pipeline {
+    pub(crate) fn new(silent: Octets, latency: u8) -> Pipeline {
         Pipeline { silent, images: [silent; Options::MAX_LATENCY as usize], latency: latency.into(), next: 0 }
     }
 
-    fn pass(&mut self, image: Octets) -> Octets {
+    pub(crate) fn pass(&mut self, image: Octets) -> Octets {
         let latency = self.latency;
         match self.images.get_mut(..latency).and_then(|used| used.get_mut(self.next)) {
             None => image,

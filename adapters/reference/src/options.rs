@@ -24,7 +24,7 @@ impl Default for Options {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum OptionError {
     /// No option of this name.
-    #[error("the reference device has no option {given:?}, did you mean {nearest:?}?")]
+    #[error("the reference DUT has no option {given:?}, did you mean {nearest:?}?")]
     UnknownOption {
         /// What was given.
         given: String,
@@ -32,7 +32,7 @@ pub enum OptionError {
         nearest: &'static str,
     },
     /// No mutant of this name.
-    #[error("the reference device has no mutant {given:?}, did you mean {nearest:?}?")]
+    #[error("the reference DUT has no mutant {given:?}, did you mean {nearest:?}?")]
     UnknownMutant {
         /// What was given.
         given: String,
@@ -40,7 +40,7 @@ pub enum OptionError {
         nearest: &'static str,
     },
     /// No clock of this name.
-    #[error("the reference device has no clock {given:?}, did you mean {nearest:?}?")]
+    #[error("the reference DUT has no clock {given:?}, did you mean {nearest:?}?")]
     UnknownClock {
         /// What was given.
         given: String,
@@ -48,13 +48,25 @@ pub enum OptionError {
         nearest: &'static str,
     },
     /// A latency that is no number or too great.
-    #[error("the latency of the reference device is a number of exchanges from 0 to {max}, not {given:?}", max = Options::MAX_LATENCY)]
+    #[error("the latency of the reference DUT is a number of exchanges from 0 to {max}, not {given:?}", max = Options::MAX_LATENCY)]
     BadLatency {
         /// What was given.
         given: String,
     },
+    /// A number of ports it cannot have.
+    #[error("the reference master has 1 to {max} ports, not {given:?}", max = crate::MasterOptions::MAX_PORTS)]
+    BadPorts {
+        /// What was given.
+        given: String,
+    },
+    /// A password that is no number.
+    #[error("a password of the reference master is up to 8 hexadecimal digits, not {given:?}")]
+    BadPassword {
+        /// What was given.
+        given: String,
+    },
     /// The same option twice.
-    #[error("the option {name:?} of the reference device is given twice")]
+    #[error("the option {name:?} of the reference DUT is given twice")]
     Repeated {
         /// Which.
         name: &'static str,
@@ -66,7 +78,7 @@ impl Options {
     pub const MAX_LATENCY: u8 = 8;
 
     const NAMES: [&'static str; 3] = ["mutant", "latency", "clock"];
-    const CLOCKS: [&'static str; 2] = ["virtual", "real"];
+    pub(crate) const CLOCKS: [&'static str; 2] = ["virtual", "real"];
 
     /// Reads the decoded pairs of a query, in any order.
     ///
@@ -74,15 +86,7 @@ impl Options {
     /// [`OptionError`] for the first pair that names no option, gives it a value it cannot have, or repeats it.
     pub fn from_query(query: &[(String, String)]) -> Result<Options, OptionError> {
         let mut options = Options::default();
-        let mut given = Vec::new();
-        for (name, value) in query {
-            let Some(known) = Options::NAMES.into_iter().find(|known| known == name) else {
-                return Err(OptionError::UnknownOption { given: name.clone(), nearest: nearest(name, Options::NAMES) });
-            };
-            if given.contains(&known) {
-                return Err(OptionError::Repeated { name: known });
-            }
-            given.push(known);
+        for (known, value) in names(query, Options::NAMES)? {
             match known {
                 "mutant" => options.mutant = Some(mutant(value)?),
                 "latency" => options.latency = latency(value)?,
@@ -93,6 +97,24 @@ impl Options {
     }
 }
 
+/// The pairs of a query with names that are known and stand there once.
+pub(crate) fn names<'q, const N: usize>(
+    query: &'q [(String, String)],
+    all: [&'static str; N],
+) -> Result<Vec<(&'static str, &'q str)>, OptionError> {
+    let mut given: Vec<(&'static str, &'q str)> = Vec::new();
+    for (name, value) in query {
+        let Some(known) = all.into_iter().find(|known| known == name) else {
+            return Err(OptionError::UnknownOption { given: name.clone(), nearest: nearest(name, all) });
+        };
+        if given.iter().any(|(name, _)| *name == known) {
+            return Err(OptionError::Repeated { name: known });
+        }
+        given.push((known, value));
+    }
+    Ok(given)
+}
+
 fn mutant(value: &str) -> Result<Mutant, OptionError> {
     Mutant::from_name(value).ok_or_else(|| OptionError::UnknownMutant {
         given: value.to_owned(),
@@ -100,12 +122,12 @@ fn mutant(value: &str) -> Result<Mutant, OptionError> {
     })
 }
 
-fn latency(value: &str) -> Result<u8, OptionError> {
+pub(crate) fn latency(value: &str) -> Result<u8, OptionError> {
     let number = value.parse().ok().filter(|number| *number <= Options::MAX_LATENCY);
     number.ok_or_else(|| OptionError::BadLatency { given: value.to_owned() })
 }
 
-fn clock(value: &str) -> Result<ClockKind, OptionError> {
+pub(crate) fn clock(value: &str) -> Result<ClockKind, OptionError> {
     match value {
         "virtual" => Ok(ClockKind::Virtual),
         "real" => Ok(ClockKind::Real),
@@ -113,6 +135,6 @@ fn clock(value: &str) -> Result<ClockKind, OptionError> {
     }
 }
 
-fn nearest<const N: usize>(given: &str, known: [&'static str; N]) -> &'static str {
+pub(crate) fn nearest<const N: usize>(given: &str, known: [&'static str; N]) -> &'static str {
     known.into_iter().min_by_key(|name| strsim::damerau_levenshtein(given, name)).unwrap_or_default()
 }

@@ -4,35 +4,49 @@ use super::model::*;
 use crate::problem::{Problem, Source, suggestion};
 use crate::tree::{Fields, Placed};
 use crate::yaml::{Node, Value};
-use fsct_adapters::Service;
+use fsct_adapters::{Role, Service};
 use std::ops::Range;
 use std::sync::Arc;
 
+mod expect;
+mod port;
+mod spdu;
+
 const BITS: &[(bool, &str)] = &[(false, "0"), (true, "1")];
-const SIGNATURES: &[(Signature, &str)] = &[
-    (Signature::Good, "good"),
-    (Signature::Zero, "zero"),
-    (Signature::Inverted, "inverted"),
-    (Signature::StartZero, "start-0"),
-    (Signature::Reversed, "reversed"),
-    (Signature::Order, "control-first"),
-];
-const FIELDS: &[(Field, &str)] =
-    &[(Field::Data, "data"), (Field::PortNum, "PortNum"), (Field::Control, "control"), (Field::Signature, "signature")];
-const LINKS: &[(Link, &str)] = &[(Link::Repeat, "repeat"), (Link::Lost, "lost"), (Link::Zero, "zero")];
-const FROM: &[(From, &str)] = &[(From::Start, "start"), (From::Next, "next"), (From::Zero, "zero")];
+const LINKS: &[(Meanwhile, &str)] =
+    &[(Meanwhile::Repeat, "repeat"), (Meanwhile::Lost, "lost"), (Meanwhile::Zero, "zero")];
+const FROM_MASTER: &[(From, &str)] = &[(From::Start, "start"), (From::Next, "next"), (From::Zero, "zero")];
+const FROM_DEVICE: &[(From, &str)] = &[(From::Start, "start"), (From::Next, "regular")];
 const OPERATORS: &[(Operator, &str)] = &[(Operator::Acknowledges, "acknowledges"), (Operator::Absent, "absent")];
-/// The words for the action of a step.
-pub const ACTIONS: [&str; 9] = ["exchange", "wait", "partner", "power", "parameterize", "write", "read", "app", "look"];
+/// The words for the action of a step, and the side they are for.
+const ACTIONS: [(&str, &[Role]); 16] = [
+    ("exchange", &[Role::Device, Role::Master]),
+    ("wait", &[Role::Device, Role::Master]),
+    ("partner", &[Role::Device, Role::Master]),
+    ("power", &[Role::Device, Role::Master]),
+    ("parameterize", &[Role::Device]),
+    ("write", &[Role::Device]),
+    ("read", &[Role::Device]),
+    ("app", &[Role::Device, Role::Master]),
+    ("configure", &[Role::Master]),
+    ("connect", &[Role::Master]),
+    ("unplug", &[Role::Master]),
+    ("smi", &[Role::Master]),
+    ("drive", &[Role::Master]),
+    ("pass", &[Role::Master]),
+    ("raise", &[Role::Master]),
+    ("look", &[Role::Device, Role::Master]),
+];
 
 /// Decodes the steps of a case or start condition; sweep variables have been replaced already.
-pub fn steps(source: &Arc<Source>, node: &Node, problems: &mut Vec<Problem>) -> Vec<Step> {
+pub fn steps(source: &Arc<Source>, role: Role, node: &Node, problems: &mut Vec<Problem>) -> Vec<Step> {
     let items = crate::tree::list(source, node, "`steps`", problems);
-    items.iter().filter_map(|item| Decoder { source, problems }.step(item)).collect()
+    items.iter().filter_map(|item| Decoder { source, role, problems }.step(item)).collect()
 }
 
 struct Decoder<'a> {
     source: &'a Arc<Source>,
+    role: Role,
     problems: &'a mut Vec<Problem>,
 }
 
@@ -43,8 +57,13 @@ impl Decoder<'_> {
 
     fn step(&mut self, node: &Node) -> Option<Step> {
         let mut fields = Fields::new(self.source, node, "a step", self.problems);
+        let words = || ACTIONS.iter().filter(|(_, roles)| roles.contains(&self.role)).map(|(word, _)| *word);
         let found: Vec<(&str, &Node)> =
-            ACTIONS.iter().filter_map(|word| fields.get(word).map(|value| (*word, value))).collect();
+            words().filter_map(|word| fields.get(word).map(|value| (word, value))).collect();
+        let port = match self.role {
+            Role::Device => None,
+            Role::Master => fields.optional_number("port", 1..=255),
+        };
         let expect = fields.get("expect");
         let remark = fields.get("remark");
         let _note = fields.optional("note");
@@ -57,7 +76,8 @@ impl Decoder<'_> {
             [(word, value)] => self.action(word, value)?,
             [] if expect.is_some() || remark.is_some() => Action::Look,
             [] => {
-                self.problem(&at, format!("a step needs one of {}", ACTIONS.join(", ")));
+                let words = words().collect::<Vec<_>>().join(", ");
+                self.problem(&at, format!("a step needs one of {words}"));
                 return None;
             }
             [_, (second, value), ..] => {
@@ -67,7 +87,8 @@ impl Decoder<'_> {
         };
         let expect = expect.map(|node| self.expectations(node)).unwrap_or_default();
         let remark = remark.map(|node| self.expectations(node)).unwrap_or_default();
-        Some(Step { text: crate::yaml::flow(node), at, action, expect, remark })
+        let port = port.unwrap_or(1) as u8;
+        Some(Step { text: crate::yaml::flow(node), at, port, action, expect, remark })
     }
 
     fn action(&mut self, word: &str, node: &Node) -> Option<Action> {
@@ -82,6 +103,16 @@ impl Decoder<'_> {
             }
             "write" | "read" => self.acyclic(word, node),
             "app" => Some(self.app(node)),
+            "configure" => Some(self.configure(node)),
+            "connect" => self.connect(node),
+            "unplug" => {
+                Fields::new(self.source, node, "`unplug`", self.problems).finish(self.problems);
+                Some(Action::Unplug)
+            }
+            "smi" => self.smi(node),
+            "drive" => Some(self.drive(node)),
+            "pass" => self.pass(node),
+            "raise" => self.raise(node),
             _ => {
                 Fields::new(self.source, node, "`look`", self.problems).finish(self.problems);
                 Some(Action::Look)
@@ -103,135 +134,6 @@ impl Decoder<'_> {
         found
     }
 
-    fn exchange(&mut self, node: &Node) -> Exchange {
-        let mut fields = Fields::new(self.source, node, "`exchange`", self.problems);
-        let mcount = fields.optional("MCount");
-        let set_sd = fields.optional_word("setSD", BITS).unwrap_or(false);
-        let ch_f_ack_req = fields.optional_word("ChFAckReq", BITS).unwrap_or(false);
-        let pdout = fields.optional("PDout");
-        let port_num = fields.optional("PortNum");
-        let reserved = fields.optional_number("reserved", 0..=7).unwrap_or(0) as u8;
-        let signature = fields.optional_word("signature", SIGNATURES).unwrap_or(Signature::Good);
-        let corrupt = fields.texts("corrupt");
-        let image = fields.optional("image");
-        let times = fields.optional_number("times", 1..=10_000_000);
-        let repeat = fields.optional_number("repeat", 1..=1_000_000).map(|count| count as u32);
-        let until = fields.get("until");
-        let within = fields.optional("within");
-        fields.finish(self.problems);
-        if times.is_some() && (until.is_some() || repeat.is_some()) || (repeat.is_some() && until.is_some()) {
-            self.problem(&node.at, "`times`, `repeat` and `until` exclude each other");
-        }
-        let until_at = until.map(|node| node.at.clone());
-        let until = until.map(|node| self.expectations(node)).unwrap_or_default();
-        let within = self.scl_cycles(within);
-        if let (Some(at), None) = (&until_at, within) {
-            self.problem(at, "`until` needs `within`, such as `within: 2 SCL cycles`");
-        }
-        Exchange {
-            mcount: mcount.and_then(|text| self.count(text)).unwrap_or(Count::Next),
-            set_sd,
-            ch_f_ack_req,
-            pdout: pdout.and_then(|text| self.data(text)).unwrap_or(Data::Pattern),
-            port_num: port_num.and_then(|text| self.port_num(text)).unwrap_or(PortNum::Own),
-            reserved,
-            signature,
-            corrupt: self.corrupt(corrupt),
-            image: image.and_then(|text| self.image(text)).unwrap_or(Image::Spdu),
-            times: times.unwrap_or(1) as u32,
-            until,
-            within: within.unwrap_or(1),
-            repeat,
-        }
-    }
-
-    fn count(&mut self, (text, at): Placed) -> Option<Count> {
-        match text.as_str() {
-            "next" => Some(Count::Next),
-            "same" => Some(Count::Same),
-            _ => {
-                let jump = text.strip_prefix('+').and_then(|more| more.parse().ok()).map(Count::Jump);
-                let exact = text.parse().ok().filter(|count| *count <= 7).map(Count::Exactly);
-                let found = jump.or(exact);
-                if found.is_none() {
-                    self.problem(&at, format!("`{text}` is no MCount: next, same, +1 and so on, or 0 to 7"));
-                }
-                found
-            }
-        }
-    }
-
-    fn data(&mut self, (text, at): Placed) -> Option<Data> {
-        match text.as_str() {
-            "pattern" => Some(Data::Pattern),
-            "safe" => Some(Data::Safe),
-            "same" => Some(Data::Same),
-            "zero-signature" => Some(Data::ZeroSignature),
-            _ => self.octets(&text, &at).map(Data::Exactly),
-        }
-    }
-
-    fn octets(&mut self, text: &str, at: &Range<usize>) -> Option<Vec<u8>> {
-        let digits: Option<Vec<u8>> = text
-            .chars()
-            .filter(|c| !c.is_whitespace() && *c != '_')
-            .map(|c| c.to_digit(16).map(|digit| digit as u8))
-            .collect();
-        let octets = digits
-            .filter(|digits| digits.len() % 2 == 0 && digits.len() <= 464)
-            .map(|digits| digits.chunks_exact(2).map(|pair| pair[0] << 4 | pair[1]).collect());
-        if octets.is_none() {
-            self.problem(at, format!("`{text}` is neither a known word nor hexadecimal octets such as `5A 01`"));
-        }
-        octets
-    }
-
-    fn port_num(&mut self, (text, at): Placed) -> Option<PortNum> {
-        match text.as_str() {
-            "own" => Some(PortNum::Own),
-            "inverted" => Some(PortNum::Inverted),
-            "foreign" => Some(PortNum::Foreign),
-            _ => match text.parse() {
-                Ok(octet) => Some(PortNum::Exactly(octet)),
-                Err(_) => {
-                    self.problem(&at, format!("`{text}` is no PortNum: own, inverted, foreign, or 0 to 255"));
-                    None
-                }
-            },
-        }
-    }
-
-    fn corrupt(&mut self, texts: Vec<Placed>) -> Corrupt {
-        if let [(text, _)] = texts.as_slice()
-            && let Some((field, _)) = FIELDS.iter().find(|(_, word)| word == text)
-        {
-            return Corrupt::Field(*field);
-        }
-        let mut bits = Vec::new();
-        for (text, at) in texts {
-            match text.parse::<usize>() {
-                Ok(bit) if bit < 8 * 31 => bits.push(bit),
-                _ => {
-                    let help = suggestion(&text, FIELDS.iter().map(|(_, word)| *word));
-                    let message = format!("`{text}` is neither a bit (0 to 247) nor a field");
-                    self.problems.push(Problem::new(self.source, at, message).help(help));
-                }
-            }
-        }
-        if bits.is_empty() { Corrupt::Nothing } else { Corrupt::Bits(bits) }
-    }
-
-    fn image(&mut self, (text, at): Placed) -> Option<Image> {
-        match text.as_str() {
-            "SPDU" => Some(Image::Spdu),
-            "zero" => Some(Image::Zero),
-            "lost" => Some(Image::Lost),
-            "echo" => Some(Image::Echo),
-            "standard" => Some(Image::Standard),
-            _ => self.octets(&text, &at).map(Image::Exactly),
-        }
-    }
-
     fn scl_cycles(&mut self, placed: Option<Placed>) -> Option<u32> {
         let (text, at) = placed?;
         let number = text.strip_suffix("SCL cycles").or_else(|| text.strip_suffix("SCL cycle"));
@@ -246,7 +148,7 @@ impl Decoder<'_> {
     fn wait(&mut self, node: &Node) -> Option<Action> {
         let mut fields = Fields::new(self.source, node, "`wait`", self.problems);
         let until = fields.text("until");
-        let link = fields.optional_word("link", LINKS).unwrap_or(Link::Repeat);
+        let link = fields.optional_word("link", LINKS).unwrap_or(Meanwhile::Repeat);
         fields.finish(self.problems);
         let until = self.duration(until?)?;
         Some(Action::Wait(Wait { until, link }))
@@ -296,7 +198,9 @@ impl Decoder<'_> {
 
     fn partner(&mut self, node: &Node) -> Action {
         let mut fields = Fields::new(self.source, node, "`partner`", self.problems);
-        let from = fields.optional_word("from", FROM).unwrap_or(From::Next);
+        let from = fields
+            .optional_word("from", if self.role == Role::Device { FROM_MASTER } else { FROM_DEVICE })
+            .unwrap_or(From::Next);
         let operator = fields.optional_word("operator", OPERATORS).unwrap_or(Operator::Acknowledges);
         let until = fields.get("until");
         let within = fields.optional("within");
@@ -325,77 +229,30 @@ impl Decoder<'_> {
 
     fn app(&mut self, node: &Node) -> Action {
         let mut fields = Fields::new(self.source, node, "`app`", self.problems);
-        let pdin = fields.optional("PDin_D");
-        let sdset = fields.optional_word("SDset_DS", BITS);
-        fields.finish(self.problems);
-        let mut set = Vec::new();
-        set.extend(pdin.and_then(|placed| self.data(placed)).map(|data| (Service::PdinD, data)));
-        set.extend(sdset.map(|bit| (Service::SdsetDs, Data::Bit(bit))));
-        if set.is_empty() {
-            self.problem(&node.at, "`app` needs `PDin_D` or `SDset_DS`");
-        }
-        Action::App(set)
-    }
-
-    fn expectations(&mut self, node: &Node) -> Vec<Expectation> {
-        let Value::Map(entries) = &node.value else {
-            self.problem(&node.at, "expectations have to be a map such as `{SDset: 1}`");
-            return Vec::new();
+        let services: &[(Service, &'static str, bool)] = match self.role {
+            Role::Device => &[(Service::PdinD, "PDin_D", false), (Service::SdsetDs, "SDset_DS", true)],
+            Role::Master => &[
+                (Service::PdoutM, "PDout_M", false),
+                (Service::SetsdC, "setSD_C", true),
+                (Service::ChfackC, "ChFAck_C", true),
+                (Service::FscpAuthenticity, "FSCP_Authenticity", false),
+            ],
         };
-        let mut found = Vec::new();
-        for (key, value) in entries {
-            let Some((name, _)) = Key::ALL.iter().find(|(_, name)| *name == key.text) else {
-                let help = suggestion(&key.text, Key::ALL.iter().map(|(_, name)| *name));
-                let message = format!("unknown key `{}` in an expectation", key.text);
-                self.problems.push(Problem::new(self.source, key.at.clone(), message).help(help));
-                continue;
-            };
-            let Value::Scalar(text) = &value.value else {
-                self.problem(&value.at, format!("`{}` has to be a single value", key.text));
-                continue;
-            };
-            if let Some(expected) = self.expected(*name, text, &value.at) {
-                found.push(Expectation { key: *name, value: expected, text: text.clone() });
+        let (mut set, mut octets) = (Vec::new(), Vec::new());
+        for (service, name, is_bit) in services {
+            match is_bit {
+                true => set.extend(fields.optional_word(name, BITS).map(|bit| (*service, Data::Bit(bit)))),
+                false => octets.extend(fields.optional(name).map(|placed| (*service, placed))),
             }
         }
-        if entries.is_empty() {
-            self.problem(&node.at, "an empty expectation checks nothing");
+        fields.finish(self.problems);
+        for (service, placed) in octets {
+            set.extend(self.data(placed).map(|data| (service, data)));
         }
-        found
-    }
-
-    fn expected(&mut self, key: Key, text: &str, at: &Range<usize>) -> Option<Expected> {
-        let number = match text.strip_prefix("0x") {
-            Some(hex) => u32::from_str_radix(hex, 16).ok(),
-            None => text.parse::<u32>().ok(),
-        };
-        let words: &[(Expected, &str)] = match key {
-            Key::DcountI => &[(Expected::Mirror, "mirror"), (Expected::Unchanged, "unchanged")],
-            Key::SdSet | Key::DcommErr | Key::Dtimeout | Key::SetSdDc | Key::ChFAckReqDc | Key::Event => &[],
-            Key::Pdin => &[(Expected::Live, "live"), (Expected::Safe, "safe")],
-            Key::Image => &[(Expected::Safe, "zero"), (Expected::Unchanged, "unchanged"), (Expected::Answer, "answer")],
-            Key::PdoutD => &[(Expected::Live, "live"), (Expected::Safe, "safe"), (Expected::Unchanged, "unchanged")],
-            Key::Reply => &[(Expected::Written, "written"), (Expected::Refused, "refused")],
-        };
-        let most = match key {
-            Key::DcountI => Some(7),
-            Key::SdSet | Key::DcommErr | Key::Dtimeout | Key::SetSdDc | Key::ChFAckReqDc => Some(1),
-            Key::Event => Some(0xFFFF),
-            _ => None,
-        };
-        let octets = matches!(key, Key::Pdin | Key::PdoutD | Key::Reply);
-        let found = words.iter().find(|(_, word)| *word == text).map(|(value, _)| value.clone());
-        let found = found.or_else(|| number.filter(|n| most.is_some_and(|most| *n <= most)).map(Expected::Number));
-        let found = match (found, octets) {
-            (None, true) if key == Key::Reply && text.starts_with("0x") => number.map(Expected::Number),
-            (None, true) => return self.octets(text, at).map(Expected::Octets),
-            (found, _) => found,
-        };
-        if found.is_none() {
-            let mut known: Vec<String> = words.iter().map(|(_, word)| (*word).to_owned()).collect();
-            known.extend(most.map(|most| format!("0 to {most}")));
-            self.problem(at, format!("`{text}` is no value of `{}`: {}", key.name(), known.join(", ")));
+        if set.is_empty() {
+            let names: Vec<String> = services.iter().map(|(_, name, _)| format!("`{name}`")).collect();
+            self.problem(&node.at, format!("`app` needs {}", names.join(" or ")));
         }
-        found
+        Action::App(set)
     }
 }

@@ -15,11 +15,15 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::Arc;
 
+const ROLES: &[(Role, &str)] = &[(Role::Device, "device"), (Role::Master, "master")];
+
 /// A file of cases.
 #[derive(Clone, Debug)]
 pub struct Suite {
     /// Its name, unique.
     pub name: String,
+    /// Group of suites it belongs to: a name to run them all by.
+    pub group: Option<String>,
     /// What it is about.
     pub about: String,
     /// Its cases, in the order of the file.
@@ -35,6 +39,10 @@ pub struct Case {
     pub title: String,
     /// Suite it stands in.
     pub suite: String,
+    /// Group of that suite.
+    pub group: Option<String>,
+    /// Features a product has to list for it.
+    pub features: Vec<String>,
     /// Requirement records it judges.
     pub requirements: Vec<String>,
     /// Which side it is for.
@@ -46,7 +54,7 @@ pub struct Case {
     /// Start condition, reached and verified first.
     pub start: String,
     /// Transitions that have to happen.
-    pub covers: Vec<u8>,
+    pub covers: Vec<Covered>,
     /// Its steps as they stand in the file.
     steps: Node,
     /// File.
@@ -55,11 +63,31 @@ pub struct Case {
     pub at: Range<usize>,
 }
 
+/// A transition that has to happen.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Covered {
+    /// Of the SCL: T1..T14 or T20..T31.
+    Scl(u8),
+    /// Of the OSSDe qualifier handler: T1..T6 (Table 43).
+    Ossde(u8),
+}
+
+impl std::fmt::Display for Covered {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Covered::Scl(number) => write!(f, "T{number}"),
+            Covered::Ossde(number) => write!(f, "OSSDe T{number}"),
+        }
+    }
+}
+
 /// A start condition.
 #[derive(Clone, Debug)]
 pub struct Start {
-    /// Its name.
+    /// Its name, unique for its side.
     pub name: String,
+    /// Which side it is for.
+    pub role: Role,
     /// What it means.
     pub about: String,
     /// The start condition it goes on from.
@@ -77,6 +105,7 @@ pub fn suite(source: &Arc<Source>) -> Result<Suite, Vec<Problem>> {
     let mut problems = Vec::new();
     let mut fields = Fields::new(source, &root, "a suite", &mut problems);
     let name = fields.text("suite").map(|placed| placed.0).unwrap_or_default();
+    let group = fields.optional("group").map(|placed| placed.0);
     let about = fields.text("about").map(|placed| placed.0).unwrap_or_default();
     let cases = fields.get("cases");
     fields.finish(&mut problems);
@@ -87,12 +116,16 @@ pub fn suite(source: &Arc<Source>) -> Result<Suite, Vec<Problem>> {
             &[]
         }
     };
-    let cases = items.iter().filter_map(|item| case(source, &name, item, &mut problems)).collect();
-    if problems.is_empty() { Ok(Suite { name, about, cases }) } else { Err(problems) }
+    let cases = items.iter().filter_map(|item| case(source, (&name, group.as_ref()), item, &mut problems)).collect();
+    if problems.is_empty() { Ok(Suite { name, group, about, cases }) } else { Err(problems) }
 }
 
-fn case(source: &Arc<Source>, suite: &str, node: &Node, problems: &mut Vec<Problem>) -> Option<Case> {
-    const ROLES: &[(Role, &str)] = &[(Role::Device, "device"), (Role::Master, "master")];
+fn case(
+    source: &Arc<Source>,
+    (suite, group): (&str, Option<&String>),
+    node: &Node,
+    problems: &mut Vec<Problem>,
+) -> Option<Case> {
     let mut fields = Fields::new(source, node, "a case", problems);
     let id = fields.text("id");
     let title = fields.text("title");
@@ -100,6 +133,7 @@ fn case(source: &Arc<Source>, suite: &str, node: &Node, problems: &mut Vec<Probl
     let requirements = fields.texts("requirements");
     let role = fields.word("dut", ROLES);
     let needs = fields.texts("needs");
+    let features = fields.texts("features");
     let axes = fields.get("sweep");
     let start = fields.text("start");
     let steps = fields.get("steps");
@@ -126,8 +160,14 @@ fn case(source: &Arc<Source>, suite: &str, node: &Node, problems: &mut Vec<Probl
     let mut transitions = Vec::new();
     for (text, at) in covers {
         match text.strip_prefix('T').and_then(|number| number.parse().ok()) {
-            Some(number @ (1..=14 | 20..=31)) => transitions.push(number),
-            _ => problem(&at, format!("`{text}` is no transition: T1 to T14 and T20 to T31 are")),
+            Some(number @ (1..=14 | 20..=31)) => transitions.push(Covered::Scl(number)),
+            _ => match text.strip_prefix("OSSDe T").and_then(|number| number.parse().ok()) {
+                Some(number @ 1..=6) => transitions.push(Covered::Ossde(number)),
+                _ => problem(
+                    &at,
+                    format!("`{text}` is no transition: T1 to T14, T20 to T31 and OSSDe T1 to OSSDe T6 are"),
+                ),
+            },
         }
     }
     let sweep = axes.map(|node| sweep::axes(source, node, problems)).unwrap_or_default();
@@ -140,6 +180,8 @@ fn case(source: &Arc<Source>, suite: &str, node: &Node, problems: &mut Vec<Probl
         id,
         title: title?.0,
         suite: suite.to_owned(),
+        group: group.cloned(),
+        features: features.into_iter().map(|placed| placed.0).collect(),
         requirements: requirements.into_iter().map(|placed| placed.0).collect(),
         role: role?,
         needs: wanted,
@@ -172,19 +214,21 @@ pub fn starts(source: &Arc<Source>) -> Result<Vec<Start>, Vec<Problem>> {
     for item in tree::list(source, &root, "the list of start conditions", &mut problems) {
         let mut fields = Fields::new(source, item, "a start condition", &mut problems);
         let name = fields.text("name");
+        let role = fields.word("dut", ROLES);
         let about = fields.text("about").map(|placed| placed.0).unwrap_or_default();
         let after = fields.optional("after");
         let steps = fields.get("steps").cloned();
         fields.finish(&mut problems);
-        let Some((name, _)) = name else { continue };
+        let (Some((name, _)), Some(role)) = (name, role) else { continue };
+        let known = || found.iter().filter(|start| start.role == role).map(|start| start.name.as_str());
         if let Some((after, at)) = &after
-            && !found.iter().any(|start| start.name == *after)
+            && !known().any(|name| name == after)
         {
-            let help = suggestion(after, found.iter().map(|start| start.name.as_str()));
+            let help = suggestion(after, known());
             problems.push(Problem::new(source, at.clone(), format!("no start condition `{after}` above")).help(help));
         }
         let steps = steps.unwrap_or(Node { at: item.at.clone(), value: Value::List(Vec::new()) });
-        found.push(Start { name, about, after: after.map(|placed| placed.0), steps, source: source.clone() });
+        found.push(Start { name, role, about, after: after.map(|placed| placed.0), steps, source: source.clone() });
     }
     if problems.is_empty() { Ok(found) } else { Err(problems) }
 }
@@ -192,7 +236,7 @@ pub fn starts(source: &Arc<Source>) -> Result<Vec<Start>, Vec<Problem>> {
 impl Start {
     /// The steps that lead here from the start condition before it.
     pub fn steps(&self, problems: &mut Vec<Problem>) -> Vec<Step> {
-        decode::steps(&self.source, &self.steps, problems)
+        decode::steps(&self.source, self.role, &self.steps, problems)
     }
 }
 
@@ -205,7 +249,7 @@ impl Case {
             let message = format!("the sweep over `{0}` changes nothing: no step uses `${0}`", axis.name);
             problems.push(Problem::new(&self.source, axis.at.clone(), message));
         }
-        decode::steps(&self.source, &steps, problems)
+        decode::steps(&self.source, self.role, &steps, problems)
     }
 
     /// `file:line` of the case.

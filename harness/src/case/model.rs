@@ -1,6 +1,7 @@
 //! A case as the engine executes it: typed steps for one point of its sweep.
 
-use fsct_adapters::Service;
+use fsct_adapters::{Line, Mode, Role, Service, SmiService, smi};
+use fsct_protocol::smi::{ArgBlock, Field as BlockField};
 use std::ops::Range;
 
 /// One step.
@@ -10,6 +11,8 @@ pub struct Step {
     pub text: String,
     /// Where it stands in its file.
     pub at: Range<usize>,
+    /// Port of an FS-Master it is about, from 1.
+    pub port: u8,
     /// What is done.
     pub action: Action,
     /// What has to be seen afterwards.
@@ -25,7 +28,7 @@ pub enum Action {
     Exchange(Box<Exchange>),
     /// Time passes; the link goes on as stated.
     Wait(Wait),
-    /// A conformant FS-Master takes over.
+    /// A conformant partner takes over: an FS-Master on an FS-Device, an FS-Device on an FS-Master.
     Partner(Partner),
     /// Supply on or off.
     Power(bool),
@@ -49,25 +52,169 @@ pub enum Action {
     },
     /// Input services of the application.
     App(Vec<(Service, Data)>),
+    /// SMI_PortConfiguration with the FSPortConfigList of the profile, and these deviations from it.
+    Configure(Configure),
+    /// A virtual FS-Device starts on the port: Ready pulse, wake-up, PREOPERATE, record, OPERATE.
+    Connect(Connect),
+    /// Nothing is connected to the port any more.
+    Unplug,
+    /// A request through the SMI.
+    Smi(Box<Smi>),
+    /// Levels on C/Q and I/Q.
+    Drive(Vec<(Line, bool)>),
+    /// Time passes; ports in operation go on.
+    Pass(Duration),
+    /// The Device on the port raises an Event.
+    Raise {
+        /// EventCode.
+        code: u16,
+        /// EventQualifier.
+        qualifier: u8,
+    },
     /// Nothing: only look.
     Look,
 }
 
+/// The FSPortConfigList of the profile with deviations.
+#[derive(Clone, Debug, Default)]
+pub struct Configure {
+    /// Fields that are not as the profile and the variant say. The signatures are computed over them.
+    pub set: Vec<(&'static BlockField, Value)>,
+    /// Octets of process data without safety relevance, in and out (MIXEDSAFETYCOM).
+    pub nsr: (u8, u8),
+    /// Whether the SCL of the port may start with this list; `None`: nobody says, and nothing is judged.
+    pub starts: Option<bool>,
+}
+
+/// A value of a field of an ArgBlock.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Value {
+    /// This one.
+    Number(u32),
+    /// The right one with its least significant bit inverted.
+    Wrong,
+}
+
+/// How a virtual FS-Device starts on a port.
+#[derive(Clone, Debug)]
+pub struct Connect {
+    /// Width of the Ready pulse in microseconds; `None`: no pulse.
+    pub pulse_us: Option<u64>,
+    /// When the Ready pulse comes, from L+ on.
+    pub after: Duration,
+    /// What the Device answers to the verify record.
+    pub record: Answered,
+    /// VendorID, where it is not the configured one.
+    pub vendor_id: Option<u16>,
+    /// DeviceID, where it is not the configured one.
+    pub device_id: Option<u32>,
+    /// How far it goes.
+    pub until: Until,
+    /// The most time for it.
+    pub within: Duration,
+}
+
+/// What a Device answers to a write.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Answered {
+    /// Written.
+    Written,
+    /// Refused: service temporarily not available, Device control.
+    Refused,
+    /// Nothing.
+    Silent,
+}
+
+/// How far the start of a port goes.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Until {
+    /// L+ is on.
+    Power,
+    /// The wake-up pulse has come.
+    WakeUp,
+    /// PREOPERATE.
+    Preoperate,
+    /// The verify record has come.
+    Record,
+    /// OPERATE.
+    Operate,
+    /// For the whole time.
+    Time,
+}
+
+/// A request through the SMI.
+#[derive(Clone, Debug)]
+pub struct Smi {
+    /// Which service.
+    pub service: SmiService,
+    /// PortNumber, where it is not that of the step.
+    pub port: Option<u8>,
+    /// ArgBlockID of the request, where it is not that of the service.
+    pub id: Option<u16>,
+    /// ExpArgBlockID, where it is not that of the service.
+    pub expected: Option<u16>,
+    /// Fields of the request.
+    pub set: Vec<(String, Value)>,
+    /// Octets behind the ArgBlockID in place of fields.
+    pub octets: Option<Vec<u8>>,
+    /// Octets more (or fewer) at the end of the request.
+    pub longer: i64,
+    /// Where the text stands that names fields.
+    pub at: Range<usize>,
+}
+
+/// The ArgBlock of a request and the one that comes back (Table 15 of both editions).
+pub fn blocks(service: SmiService) -> (Option<&'static ArgBlock>, Option<&'static ArgBlock>) {
+    use fsct_protocol::smi::*;
+    let void = Some(&VOID_BLOCK);
+    match service {
+        SmiService::MasterIdentification => (void, Some(&MASTER_IDENT)),
+        SmiService::FsMasterAccess => (Some(&FS_MASTER_ACCESS), Some(&FSCP_AUTHENTICITY)),
+        SmiService::PortConfiguration => (Some(&FS_PORT_CONFIG_LIST), void),
+        SmiService::ReadbackPortConfiguration => (void, Some(&FS_PORT_CONFIG_LIST)),
+        SmiService::PortStatus => (void, Some(&FS_PORT_STATUS_LIST)),
+        SmiService::DsToParServ => (void, Some(&DS_DATA)),
+        SmiService::ParServToDs => (Some(&DS_DATA), void),
+        SmiService::DeviceWrite => (Some(&ON_REQUEST_DATA), void),
+        SmiService::DeviceRead => (Some(&ON_REQUEST_READ), Some(&ON_REQUEST_DATA)),
+        SmiService::PortPowerOffOn => (Some(&PORT_POWER_OFF_ON), void),
+        SmiService::PdIn => (void, Some(&PD_IN)),
+        SmiService::PdOut => (Some(&PD_OUT), void),
+        SmiService::PdInOut => (void, Some(&PD_IN_OUT)),
+        SmiService::SpduIn => (void, Some(&SPDU_IN)),
+        SmiService::SpduOut => (Some(&SPDU_OUT), void),
+        SmiService::FsPdInOut => (void, Some(&FS_PD_IN_OUT)),
+        SmiService::PdInIq | SmiService::PdOutIq => (void, void),
+    }
+}
+
+/// Results of a service that a case can name: the errors of both editions.
+pub const ERRORS: [(u16, &str); 12] = [
+    (smi::job_error::ARGBLOCK_NOT_SUPPORTED, "ARGBLOCK_NOT_SUPPORTED"),
+    (smi::job_error::ARGBLOCK_INCONSISTENT, "ARGBLOCK_INCONSISTENT"),
+    (smi::job_error::DEVICE_NOT_ACCESSIBLE, "DEVICE_NOT_ACCESSIBLE"),
+    (smi::job_error::SERVICE_NOT_SUPPORTED, "SERVICE_NOT_SUPPORTED"),
+    (smi::job_error::DEVICE_NOT_IN_OPERATE, "DEVICE_NOT_IN_OPERATE"),
+    (smi::job_error::MEMORY_OVERRUN, "MEMORY_OVERRUN"),
+    (smi::job_error::PORT_NUM_INVALID, "PORT_NUM_INVALID"),
+    (smi::job_error::ARGBLOCK_LENGTH_INVALID, "ARGBLOCK_LENGTH_INVALID"),
+    (smi::job_error::SERVICE_TEMP_UNAVAILABLE, "SERVICE_TEMP_UNAVAILABLE"),
+    (smi::error_info::OUT_OF_RANGE, "OUT_OF_RANGE"),
+    (smi::error_info::STATE_CONFLICT, "STATE_CONFLICT"),
+    (smi::error_info::NO_COM, "NO_COM"),
+];
+
 /// The SPDU of an exchange and how often it goes out.
 #[derive(Clone, Debug)]
 pub struct Exchange {
-    /// MCount.
-    pub mcount: Count,
-    /// setSD.
-    pub set_sd: bool,
-    /// ChFAckReq.
-    pub ch_f_ack_req: bool,
-    /// FS-PDout.
-    pub pdout: Data,
+    /// MCount or DCount_i.
+    pub count: Count,
+    /// The bits of the control or status octet below the counter, reserved ones included.
+    pub bits: u8,
+    /// FS-PDout or FS-PDin.
+    pub pd: Data,
     /// PortNum.
     pub port_num: PortNum,
-    /// Reserved bits 4..2 of Control&MCnt, 0..7.
-    pub reserved: u8,
     /// How the signature comes about.
     pub signature: Signature,
     /// Bits falsified after the signature has been made.
@@ -87,11 +234,12 @@ pub struct Exchange {
 /// Which counter an SPDU carries.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Count {
-    /// The one after the SPDU sent last; 0 when none was sent.
+    /// To an FS-Device the one after the SPDU sent last, 0 when none was sent; to an FS-Master the mirror of the MCount
+    /// that stands.
     Next,
     /// That of the SPDU sent last.
     Same,
-    /// The next one, counted on by this many more.
+    /// As `Next`, counted on by this many more.
     Jump(u8),
     /// This one.
     Exactly(u8),
@@ -117,9 +265,9 @@ pub enum Data {
 /// The PortNum octet of an SPDU.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum PortNum {
-    /// FSP_Port.
+    /// The right one: FSP_Port, inverted in an answer.
     Own,
-    /// FSP_Port inverted, as an answer has it.
+    /// Its inverse.
     Inverted,
     /// Another port of the same FS-Master.
     Foreign,
@@ -140,7 +288,7 @@ pub enum Signature {
     StartZero,
     /// Octets in reverse order.
     Reversed,
-    /// Control octet before PortNum.
+    /// Control or status octet before PortNum.
     Order,
 }
 
@@ -162,7 +310,7 @@ pub enum Field {
     Data,
     /// PortNum.
     PortNum,
-    /// setSD and ChFAckReq: the bits of the control octet beside the counter.
+    /// The bits of the control or status octet beside the counter and the reserved ones.
     Control,
     /// Signature.
     Signature,
@@ -191,12 +339,12 @@ pub struct Wait {
     /// Until this long after the first copy of the SPDU sent last.
     pub until: Duration,
     /// What the link does meanwhile.
-    pub link: Link,
+    pub link: Meanwhile,
 }
 
 /// What the link does while time passes.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Link {
+pub enum Meanwhile {
     /// Goes on with the octets sent last.
     Repeat,
     /// Delivers nothing.
@@ -236,11 +384,11 @@ pub struct Partner {
 /// Where a partner begins.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum From {
-    /// T1: a new start.
+    /// A new start: T1, or state 21.
     Start,
-    /// After a fault it has seen: the counter goes on (T7).
+    /// An FS-Master after a fault it has seen: the counter goes on (T7). An FS-Device in regular operation.
     Next,
-    /// After a timeout it has seen: the counter is 0 (T8, T14).
+    /// An FS-Master after a timeout it has seen: the counter is 0 (T8, T14).
     Zero,
 }
 
@@ -277,6 +425,14 @@ pub enum Key {
     Dtimeout,
     /// Process data of the answer.
     Pdin,
+    /// Counter of the SPDU of an FS-Master.
+    Mcount,
+    /// setSD of the SPDU.
+    SetSd,
+    /// ChFAckReq of the SPDU.
+    ChFAckReq,
+    /// Process data of the SPDU.
+    Pdout,
     /// The image as a whole.
     Image,
     /// Service PDout_D.
@@ -285,31 +441,101 @@ pub enum Key {
     SetSdDc,
     /// Service ChFAckReq_DC.
     ChFAckReqDc,
+    /// Service PDin_M.
+    PdinM,
+    /// Service SDset_S.
+    SdsetS,
+    /// Service ChFAckReq_S.
+    ChFAckReqS,
+    /// Service FAULTS_S.
+    FaultsS,
+    /// Qualifier of the process data.
+    Qualifier,
+    /// Mode an FS-Master commands.
+    Mode,
+    /// L+ of a port.
+    PortPower,
+    /// Wake-up pulses in this step.
+    WakeUp,
+    /// What was written to 0x4202 in this step.
+    Record,
     /// Answer to a read or write.
     Reply,
+    /// Result of an SMI request.
+    Result,
+    /// RefArgBlockID of the result.
+    Reference,
+    /// ArgBlockLength of the result.
+    Length,
+    /// The ArgBlock of the result as a whole.
+    Block,
+    /// A field of it.
+    Field(&'static str),
     /// EventCode seen in this step.
     Event,
 }
 
+const DEVICE: &[Role] = &[Role::Device];
+const MASTER: &[Role] = &[Role::Master];
+const BOTH: &[Role] = &[Role::Device, Role::Master];
+
 impl Key {
-    /// All keys as written in cases.
-    pub const ALL: [(Key, &'static str); 11] = [
-        (Key::DcountI, "DCount_i"),
-        (Key::SdSet, "SDset"),
-        (Key::DcommErr, "DCommErr"),
-        (Key::Dtimeout, "DTimeout"),
-        (Key::Pdin, "PDin"),
-        (Key::Image, "image"),
-        (Key::PdoutD, "app.PDout_D"),
-        (Key::SetSdDc, "app.setSD_DC"),
-        (Key::ChFAckReqDc, "app.ChFAckReq_DC"),
-        (Key::Reply, "reply"),
-        (Key::Event, "event"),
+    /// All keys as written in cases, and the side they are for; fields of ArgBlocks are `block.` and their name.
+    pub const ALL: [(Key, &'static str, &'static [Role]); 28] = [
+        (Key::DcountI, "DCount_i", DEVICE),
+        (Key::SdSet, "SDset", DEVICE),
+        (Key::DcommErr, "DCommErr", DEVICE),
+        (Key::Dtimeout, "DTimeout", DEVICE),
+        (Key::Pdin, "PDin", DEVICE),
+        (Key::Mcount, "MCount", MASTER),
+        (Key::SetSd, "setSD", MASTER),
+        (Key::ChFAckReq, "ChFAckReq", MASTER),
+        (Key::Pdout, "PDout", MASTER),
+        (Key::Image, "image", BOTH),
+        (Key::PdoutD, "app.PDout_D", DEVICE),
+        (Key::SetSdDc, "app.setSD_DC", DEVICE),
+        (Key::ChFAckReqDc, "app.ChFAckReq_DC", DEVICE),
+        (Key::PdinM, "app.PDin_M", MASTER),
+        (Key::SdsetS, "app.SDset_S", MASTER),
+        (Key::ChFAckReqS, "app.ChFAckReq_S", MASTER),
+        (Key::FaultsS, "app.FAULTS_S", MASTER),
+        (Key::Qualifier, "app.qualifier", MASTER),
+        (Key::Mode, "mode", MASTER),
+        (Key::PortPower, "L+", MASTER),
+        (Key::WakeUp, "wake-up", MASTER),
+        (Key::Record, "record", MASTER),
+        (Key::Reply, "reply", DEVICE),
+        (Key::Result, "result", MASTER),
+        (Key::Reference, "RefArgBlockID", MASTER),
+        (Key::Length, "ArgBlockLength", MASTER),
+        (Key::Block, "block", MASTER),
+        (Key::Event, "event", BOTH),
     ];
 
-    /// As written in cases.
+    /// As written in cases; a field of an ArgBlock by its name.
     pub fn name(self) -> &'static str {
-        Key::ALL.iter().find(|entry| entry.0 == self).map_or("", |entry| entry.1)
+        match self {
+            Key::Field(name) => name,
+            _ => Key::ALL.iter().find(|entry| entry.0 == self).map_or("", |entry| entry.1),
+        }
+    }
+
+    /// Whether the oracle, which knows the tolerances in use, judges the same.
+    pub const fn is_the_oracles(self) -> bool {
+        !matches!(
+            self,
+            Key::Reply
+                | Key::Event
+                | Key::Mode
+                | Key::PortPower
+                | Key::WakeUp
+                | Key::Record
+                | Key::Result
+                | Key::Reference
+                | Key::Length
+                | Key::Block
+                | Key::Field(_)
+        )
     }
 
     /// Clause that says what is to be seen there.
@@ -318,10 +544,18 @@ impl Key {
             Key::DcountI => "11.4.6 Table 33",
             Key::SdSet | Key::DcommErr | Key::Dtimeout => "11.4.6 Table 32, 11.5.3 Table 40",
             Key::Pdin => "11.3.3 Table 29",
-            Key::Image => "11.5.3",
+            Key::Mcount | Key::SetSd | Key::ChFAckReq => "11.4.6 Table 31, 11.5.2 Table 38",
+            Key::Pdout => "11.3.2 Table 28",
+            Key::Image => "11.5",
             Key::PdoutD | Key::SetSdDc | Key::ChFAckReqDc => "11.3.3 Table 29",
+            Key::PdinM | Key::SdsetS | Key::ChFAckReqS | Key::FaultsS => "11.3.2 Table 28",
+            Key::Qualifier => "11.11.4 Table 42",
+            Key::Mode | Key::PortPower | Key::WakeUp => "7.2 Table 10",
+            Key::Record => "10.4.3.6, A.2.10",
             Key::Reply => "A.1 Table A.1",
-            Key::Event => "B.1 Table B.1",
+            Key::Result | Key::Reference | Key::Length => "10.2",
+            Key::Block | Key::Field(_) => "10.3",
+            Key::Event => "Annex B",
         }
     }
 }
@@ -333,13 +567,15 @@ pub enum Expected {
     Number(u32),
     /// The mirror of the counter sent last.
     Mirror,
+    /// The MCount after the one before the step.
+    Next,
     /// As it was before the step.
     Unchanged,
-    /// The value given by the other side: PDout sent last, PDin_D set last.
+    /// The value given by the other side: PDout or PDin sent last, PDin_D or PDout_M set last.
     Live,
     /// All octets 0.
     Safe,
-    /// An answer of the SCL, with right signature.
+    /// An SPDU with right signature.
     Answer,
     /// A write carried out.
     Written,
@@ -347,4 +583,25 @@ pub enum Expected {
     Refused,
     /// These octets.
     Octets(Vec<u8>),
+    /// A mode.
+    Mode(Mode),
+    /// What was configured.
+    Configured,
+    /// The length of what came.
+    Right,
+    /// Nothing.
+    None,
+    /// One of these results.
+    Results(Vec<Outcome>),
+}
+
+/// The result of a service.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// Result(+).
+    Positive,
+    /// Result(-), whatever the error.
+    Negative,
+    /// Result(-) with this error.
+    Error(u16),
 }

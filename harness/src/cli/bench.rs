@@ -3,10 +3,22 @@
 use crate::campaign::Bench;
 use crate::problem::suggestion;
 use fsct_adapters::{Address, Dut, DutError};
-use fsct_reference::{ConstantDevice, EchoDevice, FsDevice, NullDevice, Options};
+use fsct_reference::{
+    ConstantDevice, ConstantMaster, EchoDevice, EchoMaster, FsDevice, FsMaster, MasterOptions, NullDevice, NullMaster,
+    Options,
+};
 
 /// What `inproc:` can reach.
-const IN_PROCESS: [&str; 4] = ["reference-device", "null-device", "echo-device", "constant-device"];
+const IN_PROCESS: [&str; 8] = [
+    "reference-device",
+    "reference-master",
+    "null-device",
+    "echo-device",
+    "constant-device",
+    "null-master",
+    "echo-master",
+    "constant-master",
+];
 
 /// A usable address: for `inproc:` the name and every option are known.
 ///
@@ -38,13 +50,19 @@ fn in_process(name: &str, query: &[(String, String)]) -> Result<Box<dyn Dut>, St
     if !IN_PROCESS.contains(&name) {
         return Err(format!("there is no `inproc:{name}`; {}", suggestion(name, IN_PROCESS)));
     }
-    if name != "reference-device" && !query.is_empty() {
+    if !name.starts_with("reference-") && !query.is_empty() {
         return Err(format!("`inproc:{name}` takes no options"));
     }
     Ok(match name {
         "null-device" => Box::<NullDevice>::default(),
         "echo-device" => Box::<EchoDevice>::default(),
         "constant-device" => Box::<ConstantDevice>::default(),
+        "null-master" => Box::<NullMaster>::default(),
+        "echo-master" => Box::<EchoMaster>::default(),
+        "constant-master" => Box::<ConstantMaster>::default(),
+        "reference-master" => {
+            Box::new(FsMaster::new(MasterOptions::from_query(query).map_err(|error| error.to_string())?))
+        }
         _ => Box::new(FsDevice::new(Options::from_query(query).map_err(|error| error.to_string())?)),
     })
 }

@@ -1,12 +1,14 @@
 //! `fsct run`: judges a DUT and leaves the record and the reports.
 
 use super::{Cases, RIG, USAGE, bench, colour, fail, print, show};
-use crate::campaign::{Run, dut_info};
+use crate::campaign::{Bench, Run, dut_info};
+use crate::library::Library;
 use crate::oracle::{Mask, Tolerances};
 use crate::plan::{Plan, Selection, plan, unreached};
 use crate::problem::suggestion;
 use crate::profile::Profile;
 use crate::yaml;
+use fsct_adapters::{Address, Description, DutError};
 use fsct_protocol::Edition;
 use fsct_reports::record::{CaseRecord, DutInfo, Execution, Footer, Header, SCHEMA, Verdict};
 use fsct_reports::{Journal, Summary, visible};
@@ -26,12 +28,14 @@ pub struct Args {
     /// Names of suites, or files of cases; none: all suites
     #[arg(value_name = "SUITE")]
     suites: Vec<String>,
-    /// Device under test: inproc:NAME, exec:PROGRAM ARGS, tcp://HOST:PORT or unix:PATH
-    #[arg(long, value_name = "URL", default_value = "inproc:reference-device")]
-    dut: String,
-    /// Profile of the product: a name the binary carries, or a file
-    #[arg(long, value_name = "PROFILE", default_value = "reference-device")]
-    profile: String,
+    /// Device under test: inproc:NAME, exec:PROGRAM ARGS, tcp://HOST:PORT or unix:PATH; may be repeated. Without it the
+    /// reference FS-Device and the reference FS-Master are judged
+    #[arg(long, value_name = "URL")]
+    dut: Vec<String>,
+    /// Profile of the product: a name the binary carries, or a file; one for each role. Without it reference-device or
+    /// reference-master
+    #[arg(long, value_name = "PROFILE")]
+    profile: Vec<String>,
     /// Only this edition: v1.1 or iec2022
     #[arg(long)]
     edition: Option<Edition>,
@@ -67,6 +71,34 @@ pub fn run(args: &Args) -> u8 {
     execute(args).unwrap_or_else(|code| code)
 }
 
+/// Judged when the user names nothing.
+const REFERENCE: [&str; 2] = ["inproc:reference-device", "inproc:reference-master"];
+
+/// One DUT of a run, reached or not.
+struct Candidate<'a> {
+    url: &'a str,
+    address: Address,
+    profile: &'a Profile,
+    allowed: Mask,
+    first: Result<Bench, DutError>,
+    description: Description,
+}
+
+impl Candidate<'_> {
+    fn info(&self) -> DutInfo {
+        match &self.first {
+            Ok(_) => dut_info(self.url, self.profile, &self.description),
+            // Of a DUT that was not reached nothing is known but where it should be.
+            Err(_) => DutInfo {
+                url: self.url.to_owned(),
+                role: self.profile.role.to_string(),
+                profile: self.profile.name.clone(),
+                ..DutInfo::default()
+            },
+        }
+    }
+}
+
 fn execute(args: &Args) -> Result<u8, u8> {
     let mut library = args.cases.load()?;
     let mut selection =
@@ -80,48 +112,59 @@ fn execute(args: &Args) -> Result<u8, u8> {
                 return Err(show(&own));
             }
             selection.suites.push(name);
-        } else if library.suites.iter().any(|known| known.name == *suite) {
+        } else if library.names().any(|known| known == *suite) {
             selection.suites.push(suite.clone());
         } else {
-            let known = library.suites.iter().map(|known| known.name.as_str());
-            return Err(fail(USAGE, format!("there is no suite `{suite}`; {}", suggestion(suite, known))));
+            let help = suggestion(suite, library.names());
+            return Err(fail(USAGE, format!("there is no suite `{suite}`; {help}")));
         }
     }
-    let profile = profile(&args.profile, &library.profiles)?;
-    let address = bench::parse(&args.dut).map_err(|why| fail(USAGE, why))?;
-    let allowed = tolerances(args, &profile, &library.tolerances)?;
-
-    let first = bench::connect(&address);
-    let description = match &first {
-        Ok(bench) => bench.description.clone(),
-        Err(error) => {
-            eprintln!("fsct: {}", visible(&error.to_string()));
-            unreached(profile.role)
+    let mut profiles = Vec::new();
+    for name in &args.profile {
+        let found = profile(name, &library.profiles)?;
+        if profiles.iter().any(|other: &Profile| other.role == found.role) {
+            return Err(fail(USAGE, format!("`--profile` is given twice for a {}", found.role)));
         }
+        profiles.push(found);
+    }
+    let urls: Vec<&str> = match args.dut.as_slice() {
+        [] => {
+            let chosen = |url: &&str| {
+                profiles.is_empty() || profiles.iter().any(|profile| url.contains(&*profile.role.to_string()))
+            };
+            REFERENCE.into_iter().filter(chosen).collect()
+        }
+        given => given.iter().map(String::as_str).collect(),
     };
-    if first.is_ok()
-        && let Some(contradiction) = profile.contradicts(&description)
-    {
-        return Err(fail(USAGE, contradiction));
+    let mut candidates = Vec::new();
+    for url in urls {
+        candidates.push(candidate(args, url, &profiles, &library)?);
     }
-    let plan = plan(&library, &selection, &profile, &description).map_err(|problem| show(&[problem]))?;
+    if let Some(unused) =
+        profiles.iter().find(|profile| candidates.iter().all(|other| other.profile.role != profile.role))
+    {
+        let roles: Vec<String> = candidates.iter().map(|candidate| candidate.description.role.to_string()).collect();
+        let said = format!(
+            "profile `{}` is for a {}, the DUT says it is a {}",
+            unused.name,
+            unused.role,
+            roles.join(" and a ")
+        );
+        return Err(fail(USAGE, said));
+    }
+    let plans: Vec<Plan<'_>> = candidates
+        .iter()
+        .map(|one| plan(&library, &selection, one.profile, &one.description).map_err(|problem| show(&[problem])))
+        .collect::<Result<_, _>>()?;
+    let in_force = candidates.iter().fold(Mask::NONE, |mask, one| mask.union(one.allowed));
     let header = Header {
         schema: SCHEMA.to_owned(),
         fsct: env!("CARGO_PKG_VERSION").to_owned(),
         seed: args.seed,
-        duts: vec![match &first {
-            Ok(_) => dut_info(&args.dut, &profile, &description),
-            // Of a DUT that was not reached nothing is known but where it should be.
-            Err(_) => DutInfo {
-                url: args.dut.clone(),
-                role: profile.role.to_string(),
-                profile: profile.name.clone(),
-                ..DutInfo::default()
-            },
-        }],
-        planned: plan.cases.len(),
-        not_applicable: plan.not_applicable.clone(),
-        tolerances: in_force(allowed, &library.tolerances),
+        duts: candidates.iter().map(Candidate::info).collect(),
+        planned: plans.iter().map(|plan| plan.cases.len()).sum(),
+        not_applicable: plans.iter().flat_map(|plan| plan.not_applicable.clone()).collect(),
+        tolerances: self::in_force(in_force, &library.tolerances),
     };
     let interrupted = Arc::new(AtomicBool::new(false));
     for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
@@ -129,37 +172,71 @@ fn execute(args: &Args) -> Result<u8, u8> {
         let _ = signal_hook::flag::register_conditional_default(signal, interrupted.clone());
         let _ = signal_hook::flag::register(signal, interrupted.clone());
     }
-    let run = Run {
-        library: &library,
-        profile: &profile,
-        allowed,
-        seed: args.seed,
-        command: command(args),
-        interrupted: &interrupted,
-    };
-    let bar = progress(plan.cases.len());
+    let bar = progress(header.planned);
     let mut told = Told { bar: &bar, failures: 0 };
     let written = (|| {
         let mut journal = Journal::create(&args.out)?;
         journal.header(&header)?;
         let mut cases = 0;
-        run.execute(
-            &plan,
-            first,
-            || bench::connect(&address),
-            |case| {
-                cases += 1;
-                told.case(&case);
-                journal.case(&case)
-            },
-        )?;
+        for ((number, one), plan) in (0..).zip(candidates).zip(&plans) {
+            let run = Run {
+                library: &library,
+                profile: one.profile,
+                allowed: one.allowed,
+                seed: args.seed,
+                command: command(args, one.url, one.profile),
+                interrupted: &interrupted,
+            };
+            run.execute(
+                plan,
+                one.first,
+                || bench::connect(&one.address),
+                |mut case| {
+                    cases += 1;
+                    case.dut = number;
+                    told.case(&case);
+                    journal.case(&case)
+                },
+            )?;
+        }
         journal.footer(&Footer { cases, interrupted: interrupted.load(Ordering::Relaxed) })
     })();
     bar.finish_and_clear();
     written.map_err(|error| fail(RIG, format!("the record in {} cannot be written: {error}", args.out.display())))?;
     let summary = fsct_reports::render(&args.out).map_err(|error| fail(RIG, error))?;
-    conclude(args, &plan, &summary, interrupted.load(Ordering::Relaxed));
+    conclude(args, &plans, &summary, interrupted.load(Ordering::Relaxed));
     Ok(summary.exit_code())
+}
+
+/// Reaches a DUT and finds the profile for its role.
+fn candidate<'a>(
+    args: &Args,
+    url: &'a str,
+    profiles: &'a [Profile],
+    library: &'a Library,
+) -> Result<Candidate<'a>, u8> {
+    let address = bench::parse(url).map_err(|why| fail(USAGE, why))?;
+    let first = bench::connect(&address);
+    let role = match &first {
+        Ok(bench) => bench.description.role,
+        Err(error) => {
+            eprintln!("fsct: {}", visible(&error.to_string()));
+            profiles.first().map_or(fsct_adapters::Role::Device, |profile| profile.role)
+        }
+    };
+    let own = profiles.iter().find(|profile| profile.role == role);
+    let profile = match own.or_else(|| library.profiles.get(&default_profile(role))) {
+        Some(profile) => profile,
+        None => return Err(fail(USAGE, format!("there is no profile for a {role}; give one by --profile"))),
+    };
+    let description = first.as_ref().map_or_else(|_| unreached(profile.role), |bench| bench.description.clone());
+    let allowed = tolerances(args, profile, &library.tolerances)?;
+    Ok(Candidate { url, address, profile, allowed, first, description })
+}
+
+/// The profile a DUT is judged by when none is given.
+fn default_profile(role: fsct_adapters::Role) -> String {
+    format!("reference-{role}")
 }
 
 /// Whether a word on the command line is a file of cases and not the name of a suite.
@@ -205,14 +282,16 @@ fn in_force(allowed: Mask, table: &Tolerances) -> BTreeMap<String, String> {
 }
 
 /// The command line that leads back to a case.
-fn command(args: &Args) -> String {
+fn command(args: &Args, url: &str, profile: &Profile) -> String {
     let mut command = "fsct run".to_owned();
     for file in args.suites.iter().filter(|suite| is_file(suite)) {
         command += &format!(" '{file}'");
     }
-    command += &format!(" --dut '{}'", args.dut);
-    if args.profile != "reference-device" {
-        command += &format!(" --profile '{}'", args.profile);
+    command += &format!(" --dut '{url}'");
+    if profile.name != default_profile(profile.role) {
+        // As it was given: a file is not called by the name inside it.
+        let given = args.profile.iter().find(|given| given.as_str() == profile.name || args.profile.len() == 1);
+        command += &format!(" --profile '{}'", given.unwrap_or(&profile.name));
     }
     if let Some(folder) = &args.cases.folder {
         command += &format!(" --cases '{}'", folder.display());
@@ -281,10 +360,11 @@ impl Told<'_> {
     }
 }
 
-fn conclude(args: &Args, plan: &Plan<'_>, summary: &Summary, interrupted: bool) {
+fn conclude(args: &Args, plans: &[Plan<'_>], summary: &Summary, interrupted: bool) {
     let coloured = colour(std::io::stdout().is_terminal());
     let mut suites: BTreeMap<&str, usize> = BTreeMap::new();
-    plan.cases.iter().for_each(|planned| *suites.entry(&planned.case.suite).or_default() += 1);
+    let cases = plans.iter().flat_map(|plan| &plan.cases);
+    cases.for_each(|planned| *suites.entry(&planned.case.suite).or_default() += 1);
     for (suite, count) in suites {
         print(format!("{suite:<22} {count:>5} cases"));
     }
@@ -315,8 +395,16 @@ fn conclude(args: &Args, plan: &Plan<'_>, summary: &Summary, interrupted: bool) 
         counts.join(", "),
         summary.seed
     ));
-    if !plan.not_applicable.is_empty() {
-        print(format!("{} not applicable, with the reason in the report", plan.not_applicable.len()));
+    let not_applicable: usize = plans.iter().map(|plan| plan.not_applicable.len()).sum();
+    if not_applicable > 0 {
+        print(format!("{not_applicable} not applicable, with the reason in the report"));
+    }
+    if summary.cases == 0 {
+        // Nothing ran: the terms are all there is to say.
+        let mut terms: BTreeMap<&str, usize> = BTreeMap::new();
+        let left_out = plans.iter().flat_map(|plan| &plan.not_applicable);
+        left_out.for_each(|(_, term)| *terms.entry(term).or_default() += 1);
+        terms.iter().take(TOLD).for_each(|(term, count)| print(format!("  {count} cases: {term}")));
     }
     if interrupted {
         print("stopped by the user: the record is valid and partial");

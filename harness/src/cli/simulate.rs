@@ -1,8 +1,8 @@
-//! `fsct simulate device`: the reference FS-Device as a DUT in another process.
+//! `fsct simulate`: the reference FS-Device or FS-Master as a DUT in another process.
 
 use super::{RIG, USAGE, fail};
 use fsct_adapters::{Address, AddressError, Dut, Listener, serve};
-use fsct_reference::{FsDevice, Options};
+use fsct_reference::{FsDevice, FsMaster, MasterOptions, Options};
 
 /// Arguments of `fsct simulate`.
 #[derive(clap::Args, Debug)]
@@ -21,35 +21,48 @@ pub struct Args {
     /// Clock: virtual or real
     #[arg(long, value_name = "CLOCK")]
     clock: Option<String>,
+    /// Ports of an FS-Master
+    #[arg(long, value_name = "N")]
+    ports: Option<u8>,
 }
 
 #[derive(Copy, Clone, Debug, clap::ValueEnum)]
 enum Role {
     Device,
+    Master,
 }
 
 /// Runs the command; the result is the exit code.
 pub fn run(args: &Args) -> u8 {
-    let Role::Device = args.role;
     let mut query = Vec::new();
     let mut option = |name: &str, value: Option<String>| query.extend(value.map(|value| (name.to_owned(), value)));
     option("mutant", args.mutant.clone());
     option("latency", args.latency.map(|latency| latency.to_string()));
     option("clock", args.clock.clone());
-    let options = match Options::from_query(&query) {
-        Ok(options) => options,
-        Err(error) => return fail(USAGE, error),
-    };
+    option("ports", args.ports.map(|ports| ports.to_string()));
+    match args.role {
+        Role::Device => match Options::from_query(&query) {
+            Ok(options) => serve_on(args, "FS-Device", &|| Box::new(FsDevice::new(options))),
+            Err(error) => fail(USAGE, error),
+        },
+        Role::Master => match MasterOptions::from_query(&query) {
+            Ok(options) => serve_on(args, "FS-Master", &|| Box::new(FsMaster::new(options))),
+            Err(error) => fail(USAGE, error),
+        },
+    }
+}
+
+fn serve_on(args: &Args, what: &str, make: &(dyn Fn() -> Box<dyn Dut> + Sync)) -> u8 {
     let listener = match listen(&args.listen) {
         Ok(listener) => listener,
         Err(why) => return fail(USAGE, why),
     };
     // On stdout the frames themselves may go.
     match listener.address() {
-        Ok(address) => eprintln!("reference FS-Device at {address}"),
-        Err(_) => eprintln!("reference FS-Device on stdin and stdout"),
+        Ok(address) => eprintln!("reference {what} at {address}"),
+        Err(_) => eprintln!("reference {what} on stdin and stdout"),
     }
-    match serve(&listener, &|| -> Box<dyn Dut> { Box::new(FsDevice::new(options)) }) {
+    match serve(&listener, make) {
         Ok(()) => 0,
         Err(error) => fail(RIG, error),
     }

@@ -1,54 +1,33 @@
-//! One configuration an FS-Device may be in: its machine, its timer, and the answers it has made but may not show yet.
+//! One configuration a DUT may be in: its machine, its timer, and the SPDUs it has made but may not show yet.
 
 use super::Mask;
-use fsct_protocol::scl::{Device, Path, T};
-use fsct_protocol::spdu::{Pd, Status};
+use fsct_protocol::scl::{Path, T};
+use fsct_protocol::spdu::Pd;
 
 /// The longest answer latency that can be followed, in exchanges.
 pub const MAX_LATENCY: usize = 8;
 
-/// Bits of the status octet that a tolerance leaves free, with the tolerance.
-#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
-pub struct Free {
-    /// SDset.
-    pub sd_set: u8,
-    /// DCommErr.
-    pub d_comm_err: u8,
-    /// DTimeout.
-    pub d_timeout: u8,
+/// Transitions of one machine, T1..T14 or T20..T31, at the most.
+pub const TRANSITIONS: usize = 14;
+
+/// A machine of the tables with everything that decides how it goes on.
+pub trait Machine: Copy + PartialEq {
+    /// Number of its first transition.
+    const FIRST: u8;
 }
 
-/// What the DUT shows from a certain exchange on: its answer and its application services.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub struct Snapshot {
+/// What a DUT shows from a certain exchange on: its SPDU and its application services.
+pub trait Snapshot: Copy {
     /// Exchange in which it was made.
-    pub made: u64,
-    /// `None` before the first answer: the image is all zero.
-    pub status: Option<Status>,
-    /// Status bits not judged here, by the tolerance that says so (0: judged).
-    pub free: Free,
-    /// Generations of PDin_D of which the answer may carry one.
-    pub pdin: (u32, u32),
-    /// PDout_D expected.
-    pub pdout: Pd,
-    /// setSD_DC expected; `None` where it is not judged (A20).
-    pub set_sd_dc: Option<bool>,
-    /// ChFAckReq_DC expected; `None` where it is not judged (A27).
-    pub ch_f_ack_req_dc: Option<bool>,
+    fn made(&self) -> u64;
+    /// Sets the exchange in which it was made.
+    fn set_made(&mut self, exchange: u64);
     /// Transitions that made it.
-    pub path: Path,
-}
-
-impl Snapshot {
+    fn path(&self) -> Path;
     /// Whether no observer can tell the two apart.
-    fn looks_like(&self, other: &Snapshot) -> bool {
-        self.status == other.status
-            && self.free == other.free
-            && (self.pdin == other.pdin || self.pdin.1 == other.pdin.0 && other.pdin.0 == other.pdin.1)
-            && self.pdout == other.pdout
-            && self.set_sd_dc == other.set_sd_dc
-            && self.ch_f_ack_req_dc == other.ch_f_ack_req_dc
-    }
+    fn looks_like(&self, other: &Self) -> bool;
+    /// Takes a later one that looks alike in.
+    fn renew(&mut self, later: &Self);
 }
 
 /// When a timer expires at the earliest and at the latest, in nanoseconds.
@@ -62,15 +41,15 @@ pub struct Window {
 
 /// One configuration.
 #[derive(Copy, Clone, Debug)]
-pub struct Config {
+pub struct Config<M, S> {
     /// The machine of the tables.
-    pub device: Device,
-    /// DTimer while it runs.
+    pub machine: M,
+    /// MTimer or DTimer while it runs.
     pub timer: Option<Window>,
-    /// PDout of the SPDU processed last.
+    /// Process data of the SPDU processed last.
     pub received: Pd,
     /// Answers made and not superseded for longer than the latency, oldest first.
-    snapshots: [Snapshot; MAX_LATENCY + 1],
+    snapshots: [S; MAX_LATENCY + 1],
     count: usize,
     /// Which of them the link showed last.
     shown: usize,
@@ -80,69 +59,57 @@ pub struct Config {
     pub used: Mask,
     /// Readings decided on the way, as tolerances: A08, A09, A19.
     pub decided: Mask,
-    /// How often each of T20..T31 was taken.
-    pub taken: [u32; 12],
+    /// How often each transition was taken, from the first of the machine on.
+    pub taken: [u32; TRANSITIONS],
     /// Transitions of this exchange: an expiry, a reception.
     pub via: [Path; 2],
 }
 
-impl Config {
-    /// A machine that has not answered yet.
-    pub fn new(device: Device, pd_out: usize, exchange: u64) -> Config {
-        let idle = Snapshot {
-            made: exchange,
-            status: None,
-            free: Free::default(),
-            pdin: (0, 0),
-            pdout: Pd::safe(pd_out),
-            set_sd_dc: None,
-            ch_f_ack_req_dc: None,
-            path: Path::default(),
-        };
+impl<M: Machine, S: Snapshot> Config<M, S> {
+    /// A machine that has sent nothing yet and shows this.
+    pub fn new(machine: M, idle: S, received: Pd) -> Config<M, S> {
         Config {
-            device,
+            machine,
             timer: None,
-            received: Pd::safe(pd_out),
+            received,
             snapshots: [idle; MAX_LATENCY + 1],
             count: 1,
             shown: 0,
             reported: 0,
             used: Mask::NONE,
             decided: Mask::NONE,
-            taken: [0; 12],
+            taken: [0; TRANSITIONS],
             via: [Path::default(); 2],
         }
     }
 
     /// The answers that may be seen now, oldest first.
-    pub fn snapshots(&self) -> &[Snapshot] {
+    pub fn snapshots(&self) -> &[S] {
         &self.snapshots[..self.count]
     }
 
     /// The answers that may be seen in this exchange: from the last one that is due on.
-    pub fn visible(&self, exchange: u64, latency: u64) -> &[Snapshot] {
+    pub fn visible(&self, exchange: u64, latency: u64) -> &[S] {
         self.snapshots().get(self.oldest(exchange, latency)..).unwrap_or_default()
     }
 
     /// The last answer made so long ago that it has to be visible by now.
     fn oldest(&self, exchange: u64, latency: u64) -> usize {
         let due = exchange.saturating_sub(latency);
-        self.snapshots().iter().rposition(|snapshot| snapshot.made <= due).unwrap_or(0)
+        self.snapshots().iter().rposition(|snapshot| snapshot.made() <= due).unwrap_or(0)
     }
 
     /// The newest answer.
-    pub fn newest(&self) -> &Snapshot {
+    pub fn newest(&self) -> &S {
         &self.snapshots[self.count - 1]
     }
 
     /// Adds an answer. One that looks like the newest cannot be told from it and takes no room of its own. When more
     /// are waiting than the latency allows, the oldest is forgotten.
-    pub fn push(&mut self, snapshot: Snapshot) {
+    pub fn push(&mut self, snapshot: S) {
         let newest = &mut self.snapshots[self.count - 1];
         if newest.looks_like(&snapshot) {
-            newest.pdin.1 = snapshot.pdin.1;
-            newest.path = snapshot.path;
-            return;
+            return newest.renew(&snapshot);
         }
         if self.count == self.snapshots.len() {
             self.snapshots.copy_within(1.., 0);
@@ -159,7 +126,9 @@ impl Config {
         let [first, second] = &mut self.via;
         *(if first.is_empty() { first } else { second }) = path;
         for T(number) in path.iter() {
-            if let Some(slot) = usize::from(number).checked_sub(20).and_then(|index| self.taken.get_mut(index)) {
+            if let Some(slot) =
+                usize::from(number).checked_sub(M::FIRST.into()).and_then(|index| self.taken.get_mut(index))
+            {
                 *slot += 1;
             }
         }
@@ -172,18 +141,16 @@ impl Config {
         &mut self,
         exchange: u64,
         latency: u64,
-        link: impl Fn(&Snapshot) -> Option<Mask>,
-        app: impl Fn(&Snapshot) -> bool,
+        link: impl Fn(&S) -> Option<Mask>,
+        app: impl Fn(&S) -> Option<Mask>,
     ) -> bool {
         let oldest = self.oldest(exchange, latency);
-        let seen = |from: usize, explains: &dyn Fn(&Snapshot) -> Option<Mask>| {
+        let seen = |from: usize, explains: &dyn Fn(&S) -> Option<Mask>| {
             (from.max(oldest)..self.count).find_map(|index| Some((index, explains(&self.snapshots[index])?)))
         };
         let Some((shown, used)) = seen(self.shown, &link) else { return false };
-        let Some((reported, _)) = seen(self.reported, &|snapshot| app(snapshot).then_some(Mask::NONE)) else {
-            return false;
-        };
-        self.used = self.used.union(used);
+        let Some((reported, other)) = seen(self.reported, &app) else { return false };
+        self.used = self.used.union(used).union(other);
         let superseded = shown.min(reported);
         self.snapshots.copy_within(superseded..self.count, 0);
         self.count -= superseded;
@@ -195,8 +162,8 @@ impl Config {
     /// Takes the other configuration in when both go on alike from here: they differ in how they got here and in when their
     /// timers may expire. Windows that overlap become one, and so do those of errors found in repetitions (A29), any of
     /// which may have restarted the timer.
-    pub fn absorb(&mut self, other: &Config) -> bool {
-        let alike = self.device == other.device
+    pub fn absorb(&mut self, other: &Config<M, S>) -> bool {
+        let alike = self.machine == other.machine
             && self.decided == other.decided
             && self.shown == other.shown
             && self.reported == other.reported
@@ -217,8 +184,25 @@ impl Config {
         own.earliest = own.earliest.min(others.earliest);
         own.latest = own.latest.max(others.latest);
         for (own, other) in self.snapshots[..self.count].iter_mut().zip(other.snapshots()) {
-            own.made = own.made.max(other.made);
+            own.set_made(own.made().max(other.made()));
         }
         true
     }
+}
+
+/// Configurations with the same future are one; the one with fewer tolerances stays.
+pub fn merge<M: Machine, S: Snapshot>(configs: &mut Vec<Config<M, S>>) {
+    if configs.len() < 2 {
+        return;
+    }
+    configs.sort_by_key(|config| config.used.len());
+    let mut kept = 0;
+    for index in 0..configs.len() {
+        let config = configs[index];
+        if !configs[..kept].iter_mut().any(|other| other.absorb(&config)) {
+            configs[kept] = config;
+            kept += 1;
+        }
+    }
+    configs.truncate(kept);
 }

@@ -1,18 +1,84 @@
 //! The oracle for an FS-Device: Table 40 interpreted over everything a conformant product may be doing.
 
-use super::Mask;
-use super::config::{Config, Free, Snapshot, Window};
-use super::explain::{self, Mismatch, hex};
+use super::config::{Config, Machine, Snapshot, TRANSITIONS, Window};
+use super::explain::{self, Mismatch, Words, hex};
 use super::setup::{App, Setup};
+use super::{Mask, config, explain_device};
 use fsct_adapters::{Octets, Service};
 use fsct_protocol::Edition;
 use fsct_protocol::scl::device::{Readings, Received};
-use fsct_protocol::scl::{Device, State, T, Var};
-use fsct_protocol::spdu::{Pd, View};
+use fsct_protocol::scl::{Device, Path, State, T, Var};
+use fsct_protocol::spdu::{Pd, Status, View};
 use fsct_reports::record::Verdict;
 
 /// More configurations than this are not followed.
 const MAX_SET: usize = 64;
+
+/// Bits of the status octet that a tolerance leaves free, with the tolerance.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub struct Free {
+    /// SDset.
+    pub sd_set: u8,
+    /// DCommErr.
+    pub d_comm_err: u8,
+    /// DTimeout.
+    pub d_timeout: u8,
+}
+
+/// What the DUT shows from a certain exchange on: its answer and its application services.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Answer {
+    /// Exchange in which it was made.
+    pub made: u64,
+    /// `None` before the first answer: the image is all zero.
+    pub status: Option<Status>,
+    /// Status bits not judged here, by the tolerance that says so (0: judged).
+    pub free: Free,
+    /// Generations of PDin_D of which the answer may carry one.
+    pub pdin: (u32, u32),
+    /// PDout_D expected.
+    pub pdout: Pd,
+    /// setSD_DC expected; `None` where it is not judged (A20).
+    pub set_sd_dc: Option<bool>,
+    /// ChFAckReq_DC expected; `None` where it is not judged (A27).
+    pub ch_f_ack_req_dc: Option<bool>,
+    /// Transitions that made it.
+    pub path: Path,
+}
+
+impl Machine for Device {
+    const FIRST: u8 = 20;
+}
+
+impl Snapshot for Answer {
+    fn made(&self) -> u64 {
+        self.made
+    }
+
+    fn set_made(&mut self, exchange: u64) {
+        self.made = exchange;
+    }
+
+    fn path(&self) -> Path {
+        self.path
+    }
+
+    fn looks_like(&self, other: &Answer) -> bool {
+        self.status == other.status
+            && self.free == other.free
+            && (self.pdin == other.pdin || self.pdin.1 == other.pdin.0 && other.pdin.0 == other.pdin.1)
+            && self.pdout == other.pdout
+            && self.set_sd_dc == other.set_sd_dc
+            && self.ch_f_ack_req_dc == other.ch_f_ack_req_dc
+    }
+
+    fn renew(&mut self, later: &Answer) {
+        self.pdin.1 = later.pdin.1;
+        self.path = later.path;
+    }
+}
+
+type DeviceConfig = Config<Device, Answer>;
 
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 enum Phase {
@@ -36,8 +102,8 @@ struct Incoming {
 pub struct DeviceOracle {
     setup: Setup,
     phase: Phase,
-    configs: Vec<Config>,
-    stepped: Vec<Config>,
+    configs: Vec<DeviceConfig>,
+    stepped: Vec<DeviceConfig>,
     /// Exchanges so far.
     exchange: u64,
     last_at: u64,
@@ -46,7 +112,7 @@ pub struct DeviceOracle {
     sdset_ds: bool,
     sdset_ds_changed: bool,
     /// Of earlier power cycles in the same case.
-    taken_before: [u64; 12],
+    taken_before: [u64; TRANSITIONS],
     used_before: Mask,
 }
 
@@ -63,7 +129,7 @@ impl DeviceOracle {
             last_at: 0,
             sdset_ds: false,
             sdset_ds_changed: false,
-            taken_before: [0; 12],
+            taken_before: [0; TRANSITIONS],
             used_before: Mask::NONE,
         }
     }
@@ -87,7 +153,18 @@ impl DeviceOracle {
     /// The FSP parameterization has been accepted: the SCL may start.
     pub fn parameterized(&mut self, at: u64) {
         self.phase = Phase::Ready { since: at };
-        self.configs = vec![Config::new(Device::new(Readings::default()), self.setup.pd_out, self.exchange)];
+        let safe = Pd::safe(self.setup.pd_out);
+        let idle = Answer {
+            made: self.exchange,
+            status: None,
+            free: Free::default(),
+            pdin: (0, 0),
+            pdout: safe,
+            set_sd_dc: None,
+            ch_f_ack_req_dc: None,
+            path: Path::default(),
+        };
+        self.configs = vec![Config::new(Device::new(Readings::default()), idle, safe)];
     }
 
     /// An input service of the application was set.
@@ -162,7 +239,7 @@ impl DeviceOracle {
         Some(Incoming { received: Received { control: view.control(), intact }, pd: Pd::new(view.pd())? })
     }
 
-    fn step(&self, mut config: Config, at: u64, incoming: Option<Incoming>, out: &mut Vec<Config>) {
+    fn step(&self, mut config: DeviceConfig, at: u64, incoming: Option<Incoming>, out: &mut Vec<DeviceConfig>) {
         config.via = Default::default();
         match config.timer {
             Some(window) if at >= window.earliest => {
@@ -176,9 +253,9 @@ impl DeviceOracle {
         }
     }
 
-    fn expire(&self, config: &mut Config, at: u64, window: Window) {
-        let had_comm_err = config.device.get(Var::DcommErr) == 1;
-        let path = config.device.expire();
+    fn expire(&self, config: &mut DeviceConfig, at: u64, window: Window) {
+        let had_comm_err = config.machine.get(Var::DcommErr) == 1;
+        let path = config.machine.expire();
         let earliest = window.earliest.max(self.last_at);
         let latest = window.latest.min(at);
         let mut next = self.window(earliest, latest);
@@ -204,18 +281,18 @@ impl DeviceOracle {
         }
     }
 
-    fn receive(&self, mut config: Config, at: u64, incoming: Option<Incoming>, out: &mut Vec<Config>) {
+    fn receive(&self, mut config: DeviceConfig, at: u64, incoming: Option<Incoming>, out: &mut Vec<DeviceConfig>) {
         let Some(incoming) = incoming else { return out.push(config) };
         let Received { control, intact } = incoming.received;
-        if config.device.state() == State(20) {
+        if config.machine.state() == State(20) {
             let Phase::Ready { since } = self.phase else { return };
             if at < since + self.setup.scl_start_ns {
                 out.push(config);
             }
-            let path = config.device.start();
+            let path = config.machine.start();
             config.took(path);
         }
-        if config.device.is_old(control.mcount) {
+        if config.machine.is_old(control.mcount) {
             if !intact && self.allows(29) {
                 let mut tripped = config;
                 tripped.used = tripped.used.with(29);
@@ -224,8 +301,8 @@ impl DeviceOracle {
             }
             return out.push(config);
         }
-        let first = config.device.state() == State(21);
-        if intact && config.device.counter_check(control.mcount) {
+        let first = config.machine.state() == State(21);
+        if intact && config.machine.counter_check(control.mcount) {
             self.process(&mut config, at, incoming, true);
             return out.push(config);
         }
@@ -237,7 +314,7 @@ impl DeviceOracle {
         }
         if intact && !first {
             // A jump.
-            if config.device.readings().jump_ignored {
+            if config.machine.readings().jump_ignored {
                 return out.push(config);
             }
             if let Some(ignored) = self.decide(&mut config, 9, |readings| readings.jump_ignored = true) {
@@ -249,7 +326,7 @@ impl DeviceOracle {
             let other = self.decide(way, 8, |readings| readings.last_valid = true);
             ways[1] = other;
         }
-        if config.device.state() == State(26) {
+        if config.machine.state() == State(26) {
             for index in 0..2 {
                 let other = match ways[index].as_mut() {
                     Some(way) => self.decide(way, 19, |readings| readings.sequential = true),
@@ -265,7 +342,7 @@ impl DeviceOracle {
     }
 
     /// The first time a reading matters, both are followed; from then on each keeps to its own.
-    fn decide(&self, config: &mut Config, number: u8, read: impl Fn(&mut Readings)) -> Option<Config> {
+    fn decide(&self, config: &mut DeviceConfig, number: u8, read: impl Fn(&mut Readings)) -> Option<DeviceConfig> {
         if config.decided.has(number) {
             return None;
         }
@@ -274,9 +351,9 @@ impl DeviceOracle {
             return None;
         }
         let mut other = *config;
-        let mut readings = other.device.readings();
+        let mut readings = other.machine.readings();
         read(&mut readings);
-        other.device.set_readings(readings);
+        other.machine.set_readings(readings);
         other.used = other.used.with(number);
         if number == 8 {
             other.used = other.used.with(16);
@@ -284,14 +361,14 @@ impl DeviceOracle {
         Some(other)
     }
 
-    fn process(&self, config: &mut Config, at: u64, incoming: Incoming, valid: bool) {
-        let first = config.device.state() == State(21);
-        config.device.set_sdset_ds(self.sdset_ds);
-        let path = config.device.process(incoming.received, valid);
+    fn process(&self, config: &mut DeviceConfig, at: u64, incoming: Incoming, valid: bool) {
+        let first = config.machine.state() == State(21);
+        config.machine.set_sdset_ds(self.sdset_ds);
+        let path = config.machine.process(incoming.received, valid);
         config.received = incoming.pd;
         config.timer = Some(self.window(at, at));
         let mut free = Free::default();
-        let status = config.device.status();
+        let status = config.machine.status();
         // The technology may report its safe state by SDset_DS; without upper tester nobody knows when.
         if valid && !status.sd_set && (incoming.received.control.set_sd || !self.setup.app) {
             free.sd_set = 11;
@@ -307,24 +384,24 @@ impl DeviceOracle {
         self.answer(config, free, path, asked);
     }
 
-    fn answer(&self, config: &mut Config, free: Free, path: fsct_protocol::scl::Path, asked: Option<bool>) {
-        let pdout = if config.device.uses_pdout() { config.received } else { Pd::safe(self.setup.pd_out) };
+    fn answer(&self, config: &mut DeviceConfig, free: Free, path: Path, asked: Option<bool>) {
+        let pdout = if config.machine.uses_pdout() { config.received } else { Pd::safe(self.setup.pd_out) };
         let leaves_fault = path.iter().any(|t| t == T(28));
         let newest = self.pdin.len().saturating_sub(1) as u32;
-        let snapshot = Snapshot {
+        let snapshot = Answer {
             made: self.exchange,
-            status: Some(config.device.status()),
+            status: Some(config.machine.status()),
             free,
             pdin: (config.newest().pdin.1, newest),
             pdout,
-            set_sd_dc: (!leaves_fault).then_some(config.device.get(Var::SetSdDc) == 1),
+            set_sd_dc: (!leaves_fault).then_some(config.machine.get(Var::SetSdDc) == 1),
             ch_f_ack_req_dc: asked,
             path,
         };
         config.push(snapshot);
     }
 
-    fn observe(&self, stepped: &mut Vec<Config>, image: Option<&[u8]>, app: &App) -> Result<(), Mismatch> {
+    fn observe(&self, stepped: &mut Vec<DeviceConfig>, image: Option<&[u8]>, app: &App) -> Result<(), Mismatch> {
         if stepped.len() > MAX_SET {
             return Err(Mismatch {
                 verdict: Verdict::Inconclusive,
@@ -336,14 +413,14 @@ impl DeviceOracle {
         }
         let malformed = image.and_then(|octets| explain::form(&self.setup, octets));
         let view = image.and_then(|octets| View::new(octets, self.setup.mode, self.setup.pd_in).ok());
-        let link = |snapshot: &Snapshot| match (&snapshot.status, image) {
+        let link = |snapshot: &Answer| match (&snapshot.status, image) {
             (None, None) => Some(Mask::NONE),
             (None, Some(_)) => self.allows(18).then(|| Mask::NONE.with(18)),
             (Some(_), None) => None,
             (Some(_), Some(_)) if malformed.is_some() => None,
             (Some(_), Some(_)) => self.explains(snapshot, view?),
         };
-        let services = |snapshot: &Snapshot| self.reported(snapshot, app);
+        let services = |snapshot: &Answer| self.reported(snapshot, app).then_some(Mask::NONE);
         let mut explained = 0u64;
         for (index, config) in stepped.iter_mut().enumerate() {
             if config.observe(self.exchange, self.setup.latency, link, services) {
@@ -353,7 +430,12 @@ impl DeviceOracle {
         if explained == 0 {
             let view = view.filter(|_| malformed.is_none());
             return Err(malformed.unwrap_or_else(|| {
-                explain::nearest(&self.setup, stepped, self.exchange, view, app, |range| self.pdin_texts(range))
+                let differences = |snap: &Answer| {
+                    explain_device::differences(&self.setup, snap, view, app, &self.pdin_texts(snap.pdin))
+                };
+                let words =
+                    Words { table: explain_device::TABLE, differences: &differences, timing: &explain_device::timing };
+                explain::nearest(stepped, self.exchange, self.setup.latency, &words)
             }));
         }
         let mut index = 0;
@@ -361,11 +443,11 @@ impl DeviceOracle {
             index += 1;
             explained >> (index - 1) & 1 == 1
         });
-        merge(stepped);
+        config::merge(stepped);
         Ok(())
     }
 
-    fn explains(&self, snapshot: &Snapshot, view: View<'_>) -> Option<Mask> {
+    fn explains(&self, snapshot: &Answer, view: View<'_>) -> Option<Mask> {
         let expected = snapshot.status?;
         let seen = view.status();
         if seen.dcount_i != expected.dcount_i {
@@ -398,7 +480,7 @@ impl DeviceOracle {
         Some(used)
     }
 
-    fn reported(&self, snapshot: &Snapshot, app: &App) -> bool {
+    fn reported(&self, snapshot: &Answer, app: &App) -> bool {
         let agrees = |expected: Option<bool>, seen: Option<bool>| match (expected, seen) {
             (Some(expected), Some(seen)) => expected == seen,
             _ => true,
@@ -423,12 +505,12 @@ impl DeviceOracle {
     }
 
     /// The configuration that needs the fewest tolerances.
-    fn best(&self) -> Option<&Config> {
+    fn best(&self) -> Option<&DeviceConfig> {
         self.configs.iter().min_by_key(|config| config.used.len())
     }
 
     /// Transitions the DUT took, T20..T31, over the whole case.
-    pub fn taken(&self) -> [u64; 12] {
+    pub fn taken(&self) -> [u64; TRANSITIONS] {
         let mut taken = self.taken_before;
         if let Some(best) = self.best() {
             taken.iter_mut().zip(best.taken).for_each(|(sum, count)| *sum += u64::from(count));
@@ -448,28 +530,11 @@ impl DeviceOracle {
 
     /// Whether the SCL of the DUT may still be on its way from state 20 to 21.
     pub fn may_be_starting(&self) -> bool {
-        self.configs.iter().any(|config| config.device.state() == State(20))
+        self.configs.iter().any(|config| config.machine.state() == State(20))
     }
 
     /// The state the DUT is in as far as it can be told; `None` without supply or before FSP parameterization.
     pub fn state(&self) -> Option<State> {
-        self.best().map(|config| config.device.state())
+        self.best().map(|config| config.machine.state())
     }
-}
-
-/// Configurations with the same future are one; the one with fewer tolerances stays.
-fn merge(configs: &mut Vec<Config>) {
-    if configs.len() < 2 {
-        return;
-    }
-    configs.sort_by_key(|config| config.used.len());
-    let mut kept = 0;
-    for index in 0..configs.len() {
-        let config = configs[index];
-        if !configs[..kept].iter_mut().any(|other| other.absorb(&config)) {
-            configs[kept] = config;
-            kept += 1;
-        }
-    }
-    configs.truncate(kept);
 }

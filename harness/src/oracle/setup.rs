@@ -1,7 +1,7 @@
 //! What the oracle is told: bench and product beforehand, the application services with every exchange.
 
 use super::Mask;
-use fsct_adapters::Octets;
+use fsct_adapters::{Octets, Role, Service};
 use fsct_protocol::crc::Reading;
 use fsct_protocol::spdu::Port;
 use fsct_protocol::{Edition, ProtMode};
@@ -9,6 +9,8 @@ use fsct_protocol::{Edition, ProtMode};
 /// What the oracle has to know of bench and product.
 #[derive(Clone, Debug)]
 pub struct Setup {
+    /// Side of the link the DUT is on.
+    pub role: Role,
     /// Edition judged.
     pub edition: Edition,
     /// Signature in use.
@@ -21,6 +23,8 @@ pub struct Setup {
     pub port: Port,
     /// Reading of the start value (PIXIT, A02).
     pub reading: Reading,
+    /// MasterCycleTime in nanoseconds.
+    pub cycle_ns: u64,
     /// FSP_Watchdog in nanoseconds.
     pub watchdog_ns: u64,
     /// Tick of the product's timer in nanoseconds: widens the window on both ends (A24).
@@ -39,7 +43,33 @@ pub struct Setup {
     pub app: bool,
 }
 
-/// The output services of the application as reported last.
+impl Setup {
+    /// FS process data in an image of the DUT, in octets.
+    pub const fn image_pd(&self) -> usize {
+        match self.role {
+            Role::Device => self.pd_in,
+            Role::Master => self.pd_out,
+        }
+    }
+
+    /// FS process data in what the DUT is sent, in octets.
+    pub const fn sent_pd(&self) -> usize {
+        match self.role {
+            Role::Device => self.pd_out,
+            Role::Master => self.pd_in,
+        }
+    }
+
+    /// The PortNum octet of what the DUT is sent.
+    pub const fn sent_port(&self) -> u8 {
+        match self.role {
+            Role::Device => self.port.number(),
+            Role::Master => self.port.inverted(),
+        }
+    }
+}
+
+/// The output services of the application as reported last: those of Table 29 or those of Table 28.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct App {
     /// PDout_D.
@@ -50,4 +80,38 @@ pub struct App {
     pub ch_f_ack_req_dc: Option<bool>,
     /// SCL_Fault.
     pub scl_fault: Option<bool>,
+    /// PDin_M.
+    pub pdin_m: Option<Octets>,
+    /// SDset_S.
+    pub sdset_s: Option<bool>,
+    /// ChFAckReq_S.
+    pub ch_f_ack_req_s: Option<bool>,
+    /// FAULTS_S.
+    pub faults_s: Option<bool>,
+    /// Qualifier: GOOD.
+    pub qualifier: Option<bool>,
+}
+
+impl App {
+    /// An output service took a value.
+    pub fn report(&mut self, service: Service, value: Octets) {
+        let bit = Some(value.is_set());
+        match service {
+            Service::PdoutD => self.pdout_d = Some(value),
+            Service::SetsdDc => self.set_sd_dc = bit,
+            Service::ChfackreqDc => self.ch_f_ack_req_dc = bit,
+            Service::SclFault => self.scl_fault = bit,
+            Service::PdinM => self.pdin_m = Some(value),
+            Service::SdsetS => self.sdset_s = bit,
+            Service::ChfackreqS => self.ch_f_ack_req_s = bit,
+            Service::FaultsS => self.faults_s = bit,
+            Service::Qualifier => self.qualifier = bit,
+            Service::PdinD
+            | Service::SdsetDs
+            | Service::PdoutM
+            | Service::SetsdC
+            | Service::ChfackC
+            | Service::FscpAuthenticity => {}
+        }
+    }
 }

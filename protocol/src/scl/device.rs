@@ -179,6 +179,19 @@ impl Device {
         Device { state: State(20), vars, previous: None, readings }
     }
 
+    /// State 24 without a fault, all SD cycles worked off: regular operation in which this MCount was the last.
+    pub fn regular(mcount: u8) -> Device {
+        let mut device = Device::new(Readings::default());
+        device.vars.set(Var::SdCycles, 0);
+        device.vars.set(Var::Dtimeout, 0);
+        device.vars.set(Var::SetSdDc, 0);
+        device.vars.set(Var::McountInv, inv3(mcount));
+        device.vars.set(Var::DcountI, inv3(mcount));
+        device.previous = Some(mcount & 7);
+        device.state = State(24);
+        device
+    }
+
     /// T20: the system start is OK.
     pub fn start(&mut self) -> Path {
         self.run(&[Trigger::Start])

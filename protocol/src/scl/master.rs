@@ -140,10 +140,13 @@ impl Master {
 
     /// An answer that is not all zero is there: the checks and the next SPDU. Empty when it is left alone.
     pub fn receive(&mut self, answer: Answer) -> Path {
+        if self.takes(answer.status.dcount_i) { self.process(answer) } else { Path::default() }
+    }
+
+    /// As [`Master::receive`], whatever the guards of T6 and T10 say: for the readings that look at an answer all the same
+    /// (A05: all zero in state 7; A06: a foreign counter in state 7; A29: an error although the counter is old).
+    pub fn process(&mut self, answer: Answer) -> Path {
         let Status { dcount_i, sd_set, d_comm_err, d_timeout } = answer.status;
-        if !self.takes(dcount_i) {
-            return Path::default();
-        }
         let mirrored = dcount_i == inv3(self.vars.get(Var::Mcount));
         let faults = !answer.intact || !mirrored || d_comm_err || d_timeout;
         self.previous = Some(dcount_i);

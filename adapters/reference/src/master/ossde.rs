@@ -1,0 +1,160 @@
+//! A port in OSSDe mode: input filter, discrepancy, and the qualifier handler of 11.11.5 (Table 43), by hand from the figure.
+
+/// A line counts as changed once it has been stable for this long: test pulses are shorter (Table 8).
+const FILTER_NS: u64 = 1_000_000;
+/// Filtered lines may differ for this long (Table 8).
+const DISCREPANCY_NS: u64 = 3_000_000;
+/// When the port diagnosis of state 1 is done.
+const FIRST_CHECK_NS: u64 = 5_000_000;
+
+/// States of the qualifier handler.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+enum State {
+    PortOssdeCheck1,
+    OssdeOkGood2,
+    OssdeFaultBad3,
+    NoFaultAwaitAckQ4,
+}
+
+/// One input behind its filter.
+#[derive(Copy, Clone, Debug, Default)]
+struct Input {
+    raw: bool,
+    filtered: bool,
+    /// When a change of `raw` counts.
+    due: Option<u64>,
+}
+
+impl Input {
+    fn drive(&mut self, now: u64, level: bool) {
+        self.raw = level;
+        self.due = (level != self.filtered).then_some(now + FILTER_NS);
+    }
+
+    fn pass(&mut self, now: u64) {
+        if self.due.is_some_and(|due| due <= now) {
+            self.filtered = self.raw;
+            self.due = None;
+        }
+    }
+}
+
+/// What the services of the port show.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Outputs {
+    /// Process data in use and both lines on.
+    pub on: bool,
+    /// Qualifier: GOOD.
+    pub qualifier: bool,
+    /// ChFAckReq.
+    pub ch_f_ack_req: bool,
+}
+
+/// The port.
+#[derive(Debug)]
+pub struct Ossde {
+    state: State,
+    cq: Input,
+    iq: Input,
+    /// When an antivalence becomes a fault.
+    discrepancy_due: Option<u64>,
+    fault: bool,
+    first_check_due: Option<u64>,
+    ack_q: bool,
+}
+
+impl Ossde {
+    /// Put into OSSDe mode with these levels on C/Q and I/Q.
+    pub fn new(now: u64, cq: bool, iq: bool, ack_q: bool) -> Ossde {
+        let input = |raw: bool| Input { raw, filtered: raw, due: None };
+        let mut ossde = Ossde {
+            state: State::PortOssdeCheck1,
+            cq: input(cq),
+            iq: input(iq),
+            discrepancy_due: None,
+            fault: false,
+            first_check_due: Some(now + FIRST_CHECK_NS),
+            ack_q,
+        };
+        ossde.diagnose(now);
+        ossde
+    }
+
+    /// A level on C/Q.
+    pub fn drive_cq(&mut self, now: u64, level: bool) {
+        self.cq.drive(now, level);
+    }
+
+    /// A level on I/Q.
+    pub fn drive_iq(&mut self, now: u64, level: bool) {
+        self.iq.drive(now, level);
+    }
+
+    /// AckQ; `true` when a fault has just been acknowledged.
+    pub fn ack_q(&mut self, value: bool) {
+        let rising = value && !self.ack_q;
+        self.ack_q = value;
+        if rising && self.state == State::NoFaultAwaitAckQ4 {
+            // T5
+            self.state = State::OssdeOkGood2;
+        }
+    }
+
+    /// When something happens next by itself.
+    pub fn due(&self) -> Option<u64> {
+        [self.cq.due, self.iq.due, self.discrepancy_due, self.first_check_due].into_iter().flatten().min()
+    }
+
+    /// What is due by now is done; `true` when a fault has just been found in state 1 or 2.
+    pub fn pass(&mut self, now: u64) -> bool {
+        self.cq.pass(now);
+        self.iq.pass(now);
+        self.diagnose(now);
+        let faulty = self.fault;
+        let before = self.state;
+        if self.first_check_due.is_some_and(|due| due <= now) {
+            self.first_check_due = None;
+        }
+        self.state = match self.state {
+            State::PortOssdeCheck1 if faulty => State::OssdeFaultBad3,
+            State::PortOssdeCheck1 if self.first_check_due.is_none() && self.discrepancy_due.is_none() => {
+                State::OssdeOkGood2
+            }
+            State::OssdeOkGood2 | State::NoFaultAwaitAckQ4 if faulty => State::OssdeFaultBad3,
+            State::OssdeFaultBad3 if !faulty => State::NoFaultAwaitAckQ4,
+            state => state,
+        };
+        self.state == State::OssdeFaultBad3 && before != State::OssdeFaultBad3
+    }
+
+    fn diagnose(&mut self, now: u64) {
+        if self.cq.filtered == self.iq.filtered {
+            self.discrepancy_due = None;
+            self.fault = false;
+            return;
+        }
+        match self.discrepancy_due {
+            None if !self.fault => self.discrepancy_due = Some(now + DISCREPANCY_NS),
+            Some(due) if due <= now => {
+                self.discrepancy_due = None;
+                self.fault = true;
+            }
+            _ => {}
+        }
+    }
+
+    /// Octet 0 of FSInBuffer: bit 0 is C/Q, bit 1 is I/Q (10.5).
+    pub fn image(&self) -> u8 {
+        u8::from(self.cq.filtered) | u8::from(self.iq.filtered) << 1
+    }
+
+    /// What the services show.
+    pub fn outputs(&self) -> Outputs {
+        let good = self.state == State::OssdeOkGood2;
+        Outputs {
+            on: good && self.cq.filtered && self.iq.filtered,
+            qualifier: good,
+            ch_f_ack_req: self.state == State::NoFaultAwaitAckQ4,
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! What a step expects: keys and values by the side they are for.
+
+use super::Decoder;
+use crate::case::model::*;
+use crate::problem::{Problem, suggestion};
+use crate::yaml::{Node, Value};
+use fsct_adapters::{Mode, Role};
+use std::ops::Range;
+
+impl Decoder<'_> {
+    pub(super) fn expectations(&mut self, node: &Node) -> Vec<Expectation> {
+        let Value::Map(entries) = &node.value else {
+            self.problem(&node.at, "expectations have to be a map such as `{SDset: 1}`");
+            return Vec::new();
+        };
+        let mut found = Vec::new();
+        for (key, value) in entries {
+            let Some(name) = self.key(&key.text) else {
+                let known = Key::ALL.iter().filter(|(.., roles)| roles.contains(&self.role)).map(|entry| entry.1);
+                let fields = block_fields().map(|field| format!("block.{field}"));
+                let known: Vec<String> = known.map(str::to_owned).chain(fields).collect();
+                let help = suggestion(&key.text, known.iter().map(String::as_str));
+                let message = format!("unknown key `{}` in an expectation", key.text);
+                self.problems.push(Problem::new(self.source, key.at.clone(), message).help(help));
+                continue;
+            };
+            let Value::Scalar(text) = &value.value else {
+                self.problem(&value.at, format!("`{}` has to be a single value", key.text));
+                continue;
+            };
+            if let Some(expected) = self.expected(name, text, &value.at) {
+                found.push(Expectation { key: name, value: expected, text: text.clone() });
+            }
+        }
+        if entries.is_empty() {
+            self.problem(&node.at, "an empty expectation checks nothing");
+        }
+        found
+    }
+
+    fn key(&self, text: &str) -> Option<Key> {
+        if let Some(name) = text.strip_prefix("block.")
+            && self.role == Role::Master
+        {
+            return block_fields().find(|field| *field == name).map(Key::Field);
+        }
+        Key::ALL.iter().find(|(_, name, roles)| *name == text && roles.contains(&self.role)).map(|entry| entry.0)
+    }
+
+    fn expected(&mut self, key: Key, text: &str, at: &Range<usize>) -> Option<Expected> {
+        let number = match text.strip_prefix("0x") {
+            Some(hex) => u32::from_str_radix(hex, 16).ok(),
+            None => text.parse::<u32>().ok(),
+        };
+        if key == Key::Result {
+            return self.results(text, at).map(Expected::Results);
+        }
+        let (words, most, octets) = values(key);
+        let found = words.iter().find(|(_, word)| *word == text).map(|(value, _)| value.clone());
+        let found = found.or_else(|| number.filter(|n| most.is_some_and(|most| *n <= most)).map(Expected::Number));
+        let found = match (found, octets) {
+            (None, true) if key == Key::Reply && text.starts_with("0x") => number.map(Expected::Number),
+            (None, true) => return self.octets(text, at).map(Expected::Octets),
+            (found, _) => found,
+        };
+        if found.is_none() {
+            let mut known: Vec<String> = words.iter().map(|(_, word)| (*word).to_owned()).collect();
+            known.extend(most.map(|most| format!("0 to {most}")));
+            self.problem(at, format!("`{text}` is no value of `{}`: {}", key.name(), known.join(", ")));
+        }
+        found
+    }
+
+    /// `positive`, `negative` or errors by name, several of them with ` or ` between.
+    fn results(&mut self, text: &str, at: &Range<usize>) -> Option<Vec<Outcome>> {
+        let mut found = Vec::new();
+        for word in text.split(" or ") {
+            let outcome = match word {
+                "positive" => Outcome::Positive,
+                "negative" => Outcome::Negative,
+                name => match ERRORS.iter().find(|(_, known)| *known == name) {
+                    Some((error, _)) => Outcome::Error(*error),
+                    None => {
+                        let known = ["positive", "negative"].into_iter().chain(ERRORS.iter().map(|entry| entry.1));
+                        let help = suggestion(name, known);
+                        let message = format!("`{name}` is no result of a service");
+                        self.problems.push(Problem::new(self.source, at.clone(), message).help(help));
+                        return None;
+                    }
+                },
+            };
+            found.push(outcome);
+        }
+        Some(found)
+    }
+}
+
+type Words = &'static [(Expected, &'static str)];
+
+/// The words a key takes, the greatest number, and whether octets will do.
+fn values(key: Key) -> (Words, Option<u32>, bool) {
+    const BITS: Option<u32> = Some(1);
+    match key {
+        Key::DcountI => (&[(Expected::Mirror, "mirror"), (Expected::Unchanged, "unchanged")], Some(7), false),
+        Key::Mcount => (&[(Expected::Next, "next"), (Expected::Unchanged, "unchanged")], Some(7), false),
+        Key::SdSet | Key::DcommErr | Key::Dtimeout | Key::SetSdDc | Key::ChFAckReqDc => (&[], BITS, false),
+        Key::SetSd | Key::ChFAckReq | Key::SdsetS | Key::ChFAckReqS | Key::FaultsS | Key::PortPower => {
+            (&[], BITS, false)
+        }
+        Key::Qualifier => (&[(Expected::Number(1), "GOOD"), (Expected::Number(0), "BAD")], None, false),
+        Key::Pdin | Key::Pdout => (&[(Expected::Live, "live"), (Expected::Safe, "safe")], None, true),
+        Key::Image => {
+            (&[(Expected::Safe, "zero"), (Expected::Unchanged, "unchanged"), (Expected::Answer, "answer")], None, false)
+        }
+        Key::PdoutD | Key::PdinM => {
+            (&[(Expected::Live, "live"), (Expected::Safe, "safe"), (Expected::Unchanged, "unchanged")], None, true)
+        }
+        Key::Mode => (
+            &[
+                (Expected::Mode(Mode::Inactive), "INACTIVE"),
+                (Expected::Mode(Mode::Startup), "STARTUP"),
+                (Expected::Mode(Mode::Preoperate), "PREOPERATE"),
+                (Expected::Mode(Mode::Operate), "OPERATE"),
+            ],
+            None,
+            false,
+        ),
+        Key::WakeUp => (&[], Some(1_000), false),
+        Key::Record => (&[(Expected::Configured, "configured"), (Expected::None, "none")], None, true),
+        Key::Reply => (&[(Expected::Written, "written"), (Expected::Refused, "refused")], None, true),
+        Key::Event => (&[(Expected::None, "none")], Some(0xFFFF), false),
+        Key::Length => (&[(Expected::Right, "right")], Some(0xFFFF), false),
+        Key::Reference => (&[], Some(0xFFFF), false),
+        Key::Block => (&[(Expected::Configured, "configured"), (Expected::None, "none")], None, true),
+        Key::Field(_) => (&[(Expected::Configured, "configured")], Some(u32::MAX), false),
+        Key::Result => (&[], None, false),
+    }
+}
+
+/// The names of the fields of all ArgBlocks.
+fn block_fields() -> impl Iterator<Item = &'static str> {
+    fsct_protocol::smi::ALL.into_iter().flat_map(|block| block.fields.iter().map(|field| field.name))
+}
