@@ -356,6 +356,7 @@ impl<'s, 'd> Engine<'s, 'd> {
             + duration.margins * late
             + duration.guards * (profile.timer_tick_us * 1_000 + self.session.description.clock.uncertainty_ns) as i64
             + duration.ms * 1_000_000
+            + duration.us * 1_000
     }
 
     fn partner(&mut self, wanted: &super::case::model::Partner, before: &Before) -> Result<Vec<Expectation>, Stop> {
@@ -494,6 +495,7 @@ impl<'s, 'd> Engine<'s, 'd> {
             let value = match data {
                 Data::Bit(bit) => Octets::bit(*bit),
                 Data::Exactly(octets) if *service == Service::FscpAuthenticity => port::fscp_authenticity(octets),
+                _ if *service == Service::FscpAuthenticity => self.own_authenticity(),
                 data => {
                     let setup = self.session.setup();
                     // For a signature of 0 in the next answer: its PortNum and status octet are known.

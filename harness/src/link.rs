@@ -2,7 +2,7 @@
 
 use crate::keeper::Keeper;
 use crate::oracle::{App, Mismatch, Oracle, OssdeOracle, Setup};
-use fsct_adapters::{Line, Mode, Octets, Role, Seen, Service};
+use fsct_adapters::{Identity, Line, Mode, Octets, Role, Seen, Service};
 use fsct_protocol::Edition;
 use fsct_protocol::fsp::INDEX_VERIFY;
 use fsct_protocol::spdu::View;
@@ -47,6 +47,8 @@ pub struct Link {
     pub configured: Vec<u8>,
     /// Whether the SCL may start with it; `None`: nothing is judged.
     pub starts: Option<bool>,
+    /// The Device that is connected; `None` when nobody knows.
+    pub plugged: Option<Option<Identity>>,
     /// Levels driven on C/Q and I/Q.
     pub levels: (bool, bool),
     /// The oracle of the OSSDe qualifier handler, in that port mode.
@@ -81,6 +83,7 @@ impl Link {
             records: Vec::new(),
             configured: Vec::new(),
             starts: None,
+            plugged: None,
             levels: (false, false),
             ossde: None,
             unsettled: None,

@@ -15,7 +15,15 @@ pub enum Partner {
     /// An FS-Master.
     Master(VirtualMaster),
     /// An FS-Device, and the operator at the gateway of the DUT.
-    Device(Box<Keeper>, Operator),
+    Device(Box<Keeper>, Gateway),
+}
+
+/// The operator at the gateway of an FS-Master: released until asked for, so that the change from 0 to 1 is seen.
+pub struct Gateway {
+    operator: Operator,
+    pressed: bool,
+    /// Exchanges since the button was released.
+    released: u64,
 }
 
 /// A conformant FS-Master.
@@ -31,15 +39,16 @@ impl Partner {
     /// Takes over from the scripted tester.
     pub fn new(from: From, operator: Operator, session: &Session<'_>, tester: &mut Tester) -> Partner {
         let setup = session.setup();
+        let gateway = Gateway { operator, pressed: false, released: 0 };
         match (setup.role, from, tester.answered) {
             (Role::Device, ..) => Partner::Master(VirtualMaster::new(from, operator, session, tester)),
             (Role::Master, From::Next | From::Zero, Some(answered)) => {
                 let pdin = Pd::new(&tester.pattern(setup.pd_in)).unwrap_or(Pd::safe(setup.pd_in));
-                Partner::Device(Box::new(Keeper::regular(setup, pdin, answered, session.now)), operator)
+                Partner::Device(Box::new(Keeper::regular(setup, pdin, answered, session.now)), gateway)
             }
             (Role::Master, ..) => {
                 let pdin = Pd::new(&tester.pattern(setup.pd_in)).unwrap_or(Pd::safe(setup.pd_in));
-                Partner::Device(Box::new(Keeper::started(setup, pdin)), operator)
+                Partner::Device(Box::new(Keeper::started(setup, pdin)), gateway)
             }
         }
     }
@@ -51,8 +60,8 @@ impl Partner {
     pub fn exchange(&mut self, session: &mut Session<'_>, tester: &mut Tester) -> Result<(), Stop> {
         match self {
             Partner::Master(master) => master.exchange(session, tester),
-            Partner::Device(keeper, operator) => {
-                operate(*operator, session)?;
+            Partner::Device(keeper, gateway) => {
+                gateway.operate(session)?;
                 session.exchange(keeper.octets())?;
                 let link = session.link();
                 keeper.received(session.now, link.image.as_ref(), link.oracle.setup());
@@ -80,14 +89,31 @@ impl Partner {
     }
 }
 
-/// The operator at the gateway of an FS-Master: released until asked for, so that the change from 0 to 1 is seen.
-fn operate(operator: Operator, session: &mut Session<'_>) -> Result<(), Stop> {
-    let link = session.link();
-    let asked = operator == Operator::Acknowledges && link.app.ch_f_ack_req_s == Some(true);
-    if link.ack != asked && session.serves(Pco::App) {
-        session.set(Service::ChfackC, Octets::bit(asked))?;
+impl Gateway {
+    fn operate(&mut self, session: &mut Session<'_>) -> Result<(), Stop> {
+        if !session.serves(Pco::App) {
+            return Ok(());
+        }
+        let link = session.link();
+        let asked = self.operator == Operator::Acknowledges && link.app.ch_f_ack_req_s == Some(true);
+        // A good answer has to be checked while the button is released before pressing it counts (T13).
+        let seen = self.released > session.profile.answer_latency + 1;
+        match (link.ack, asked) {
+            (true, asked) if !(self.pressed && asked) => {
+                (self.pressed, self.released) = (false, 0);
+                session.set(Service::ChfackC, Octets::bit(false))
+            }
+            (false, true) if seen => {
+                self.pressed = true;
+                session.set(Service::ChfackC, Octets::bit(true))
+            }
+            (false, _) => {
+                self.released += 1;
+                Ok(())
+            }
+            _ => Ok(()),
+        }
     }
-    Ok(())
 }
 
 impl VirtualMaster {

@@ -403,6 +403,8 @@ impl<'d> Session<'d> {
             Seen::Unsupported => match stimulus {
                 Stimulus::Read { .. } | Stimulus::Write { .. } => self.reply = Some(Reply::Unsupported),
                 Stimulus::Other { .. } | Stimulus::Smi(_) => {}
+                // An FS-Master without an upper-level system; what needs one is a matter of the profile.
+                Stimulus::Set { service: Service::FscpAuthenticity, .. } => {}
                 other => return Err(Stop::Unserved(format!("the DUT does not serve {}", crate::trace::name(other)))),
             },
         }

@@ -135,7 +135,7 @@ impl Tester {
             }
             Data::ZeroSignature => zero_signature(self.setup.mode, self.setup.reading, length, trailer)
                 .unwrap_or_else(|| self.pattern(length)),
-            Data::Safe | Data::Bit(_) => vec![0; length],
+            Data::Safe | Data::Bit(_) | Data::Profile => vec![0; length],
         };
         Pd::new(&octets).unwrap_or(Pd::safe(length))
     }

@@ -173,6 +173,7 @@ impl Decoder<'_> {
                 "margin" if open => sum.margins += amount,
                 "guard" if open => sum.guards += amount,
                 "ms" if open && number.is_some() => sum.ms += amount,
+                "us" if open && number.is_some() => sum.us += amount,
                 _ => match word.parse::<i64>() {
                     Ok(value) if open && number.is_none() && (0..=1_000_000).contains(&value) => {
                         number = Some(value);
@@ -190,7 +191,7 @@ impl Decoder<'_> {
         self.problem(
             at,
             format!(
-                "`{text}` is no duration, such as `2 FSP_Watchdog - 1 MasterCycleTime` (also `margin`, `guard`, `5 ms`)"
+                "`{text}` is no duration, such as `2 FSP_Watchdog - 1 MasterCycleTime` (also `margin`, `guard`, `5 ms`, `900 us`)"
             ),
         );
         None

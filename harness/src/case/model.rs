@@ -260,6 +260,8 @@ pub enum Data {
     Exactly(Vec<u8>),
     /// A service of one bit.
     Bit(bool),
+    /// What the profile says (FSCP_Authenticity).
+    Profile,
 }
 
 /// The PortNum octet of an SPDU.
@@ -366,6 +368,8 @@ pub struct Duration {
     pub guards: i64,
     /// Milliseconds.
     pub ms: i64,
+    /// Microseconds.
+    pub us: i64,
 }
 
 /// A conformant FS-Master takes over.

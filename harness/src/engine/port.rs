@@ -4,7 +4,7 @@ use super::Engine;
 use crate::case::model::*;
 use crate::portconfig;
 use crate::session::Stop;
-use fsct_adapters::{Line, Mode, Octets, Pco, Response, SmiRequest, SmiService, Stimulus};
+use fsct_adapters::{Identity, Line, Mode, Octets, Pco, Response, Service, SmiRequest, SmiService, Stimulus};
 use fsct_protocol::Edition;
 use fsct_protocol::smi::{FS_MASTER_ACCESS, OSSDE};
 use fsct_reports::record::{Check, Verdict};
@@ -111,7 +111,7 @@ impl Engine<'_, '_> {
         identity.vendor_id = connect.vendor_id.unwrap_or(identity.vendor_id);
         identity.device_id = connect.device_id.unwrap_or(identity.device_id);
         self.tester_mut().restart();
-        self.session.act(Stimulus::Plug { port, device: Some(identity) })?;
+        self.plug(port, Some(identity))?;
         let mut pulse_at = None;
         while self.session.now < deadline && !self.reached(connect.until) {
             let link = self.session.link();
@@ -208,7 +208,15 @@ impl Engine<'_, '_> {
     /// The Device is gone.
     pub(super) fn unplug(&mut self) -> Result<(), Stop> {
         let port = self.session.link().port;
-        self.session.act(Stimulus::Plug { port, device: None })
+        self.plug(port, None)
+    }
+
+    fn plug(&mut self, port: u8, device: Option<Identity>) -> Result<(), Stop> {
+        let link = self.session.link_mut();
+        if link.plugged.replace(device) == Some(device) {
+            return Ok(());
+        }
+        self.session.act(Stimulus::Plug { port, device })
     }
 
     /// Levels on the lines.
@@ -232,8 +240,19 @@ impl Engine<'_, '_> {
         Ok(())
     }
 
+    /// The authenticity of the profile.
+    pub(super) fn own_authenticity(&self) -> Octets {
+        let profile = self.session.profile;
+        let own = [profile.authenticity_1.to_be_bytes(), profile.authenticity_2.to_be_bytes()].concat();
+        fscp_authenticity(&own)
+    }
+
     /// The start of a port of an FS-Master as its profile says: configuration and start of a virtual FS-Device.
     pub(super) fn bring_up(&mut self) -> Result<(), Stop> {
+        if self.session.serves(Pco::App) {
+            let own = self.own_authenticity();
+            self.session.set(Service::FscpAuthenticity, own)?;
+        }
         self.configure(&Configure { starts: Some(true), ..Configure::default() })?;
         let ms = |ms| Duration { ms, ..Duration::default() };
         self.connect(&Connect {

@@ -86,7 +86,9 @@ pub fn of_result(expectation: &Expectation, session: &Session<'_>) -> Judged {
             let field = block.and_then(|block| block.field(name));
             let seen = field.and_then(|field| field.value(edition, &result.octets));
             let right = match expected {
-                Expected::Configured => field.and_then(|field| field.value(edition, &session.link().configured)),
+                Expected::Configured => {
+                    FS_PORT_CONFIG_LIST.field(name).and_then(|field| field.value(edition, &session.link().configured))
+                }
                 _ => Some(number(expectation)),
             };
             let text =

@@ -1,6 +1,6 @@
 //! A mismatch of an FS-Master in words.
 
-use super::config::Config;
+use super::config::{Config, Snapshot};
 use super::explain::{Difference, Differences, bit, data, transition};
 use super::master::{Port, Spdu};
 use super::setup::{App, Setup};
@@ -10,12 +10,20 @@ use fsct_protocol::spdu::View;
 pub const TABLE: &str = "11.5.2 Table 38";
 
 /// A change to MCount 0, or its absence, is a matter of MTimer when nothing else differs but what T8 and T14 do.
-pub fn timing(config: &Config<Port, Spdu>, snap: &Spdu, differences: &[Difference]) -> Option<(String, String)> {
+pub fn timing(
+    exchange: u64,
+    config: &Config<Port, Spdu>,
+    snap: &Spdu,
+    differences: &[Difference],
+) -> Option<(String, String)> {
     let seen = differences.iter().find(|difference| difference.field == "MCount")?;
     let expired = snap.path.iter().any(|t| matches!(t.0, 8 | 14));
     let expiry = if config.machine.master.state().0 == 7 { "T14" } else { "T8" };
-    let early = !expired && config.timer.is_some() && seen.observed == "MCount 0" && seen.expected != "MCount 0";
-    let late = expired && seen.expected == "MCount 0";
+    // An SPDU made in this very exchange was made by an answer, not by the timer.
+    let standing = snap.made() < exchange;
+    let early = !expired && standing && config.timer.is_some() && seen.observed == "MCount 0";
+    let before = |spdu: &Spdu| spdu.control.is_some_and(|c| format!("MCount {}", c.mcount) == seen.observed);
+    let late = expired && seen.expected == "MCount 0" && config.snapshots().iter().any(before);
     match (early, late) {
         (true, _) => Some(("watchdog/early".into(), format!("11.5.5, {TABLE} {expiry} (FSP_Watchdog)"))),
         (_, true) => {

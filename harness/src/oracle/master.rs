@@ -449,8 +449,10 @@ impl MasterOracle {
                 let differences = |snap: &Spdu| {
                     explain_master::differences(&self.setup, snap, view, app, &self.pdout_texts(snap.pdout))
                 };
-                let words =
-                    Words { table: explain_master::TABLE, differences: &differences, timing: &explain_master::timing };
+                let timing = |config: &MasterConfig, snap: &Spdu, differences: &[explain::Difference]| {
+                    explain_master::timing(self.exchange, config, snap, differences)
+                };
+                let words = Words { table: explain_master::TABLE, differences: &differences, timing: &timing };
                 explain::nearest(stepped, self.exchange, self.setup.latency, &words)
             }));
         }

@@ -162,7 +162,9 @@ impl PortUnit {
             None => 0,
         };
         let (pd_in, pd_out) = if mode == port_mode::OSSDE { (1, 0) } else { (pd(config.spdu_in), pd(config.spdu_out)) };
-        self.inputs.pd_out = Pd::safe(pd_out.into());
+        if self.inputs.pd_out.octets().len() != usize::from(pd_out) {
+            self.inputs.pd_out = Pd::safe(pd_out.into());
+        }
         self.images = Pipeline::new(Octets::zero(config.spdu_out.into()), self.latency);
         self.nsr_out = vec![0; config.nsr.unwrap_or((0, 0)).1.into()];
         self.config = Some(config);

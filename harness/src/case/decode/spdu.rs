@@ -139,6 +139,7 @@ impl Decoder<'_> {
             "safe" => Some(Data::Safe),
             "same" => Some(Data::Same),
             "zero-signature" => Some(Data::ZeroSignature),
+            "profile" => Some(Data::Profile),
             _ => self.octets(&text, &at).map(Data::Exactly),
         }
     }
