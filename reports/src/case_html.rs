@@ -3,6 +3,7 @@
 
 use crate::chart::chart;
 use crate::decode::Side;
+use crate::duts::Duts;
 use crate::html::word;
 use crate::record::{CaseRecord, Reason, RequirementRef};
 use crate::story::around;
@@ -16,13 +17,23 @@ const TEXT: usize = 600;
 /// Steps listed, and checks of one step.
 const LISTED: usize = 80;
 
-/// What is left of the page.
-#[derive(Default)]
-pub struct Room {
+/// What is left of the page, and what is the same for all cases.
+pub struct Room<'r> {
     left: Cell<usize>,
+    duts: Duts<'r>,
 }
 
-impl Room {
+impl<'r> Room<'r> {
+    /// A page without room yet, about these DUTs.
+    pub fn new(duts: Duts<'r>) -> Room<'r> {
+        Room { left: Cell::new(0), duts }
+    }
+
+    /// The DUTs of the run.
+    pub const fn duts(&self) -> Duts<'r> {
+        self.duts
+    }
+
     /// So many octets more.
     pub fn add(&self, octets: usize) {
         self.left.set(self.left.get().saturating_add(octets));
@@ -36,12 +47,13 @@ impl Room {
 }
 
 /// A case that needs a reader; `None` when there is no room left even without steps and chart.
-pub fn full(case: &CaseRecord, room: &Room) -> Option<Markup> {
+pub fn full(case: &CaseRecord, room: &Room<'_>) -> Option<Markup> {
     let (said, class) = word(case);
     let around = around(case, Side::of(&case.role));
     let told = room.take(html! {
         h3 { span class=(format!("word {class}")) { (said) } " " (clean(&case.id)) ": " (short(&case.title, TEXT)) }
         p.soft { code { (short(&case.key, TEXT)) } " · " (clean(&case.place)) " · execution: " (execution_name(case.execution)) }
+        @if let Some(dut) = room.duts.of_case(case) { p { "On " (dut) } }
         p { "Judges " (requirements(case)) }
         @for reason in &case.reasons { (why(reason, case)) }
         @for (id, text) in &case.tolerances { p.remark { span.word { "● " (clean(id)) } " " (short(text, TEXT)) } }
@@ -67,7 +79,7 @@ pub fn requirements(case: &CaseRecord) -> String {
 }
 
 /// Steps with their checks, and the chart; `None` when there is no room for them.
-pub fn body(case: &CaseRecord, room: &Room) -> Option<Markup> {
+pub fn body(case: &CaseRecord, room: &Room<'_>) -> Option<Markup> {
     room.take(html! {
         (steps(case))
         @if !case.trace.is_empty() { (chart(case, Side::of(&case.role))) }

@@ -1,5 +1,6 @@
 //! SPDUs of a record in words: field by field for the reader, short for charts.
 
+use crate::machine::Machine;
 use crate::record::VariantInfo;
 use fsct_protocol::ProtMode;
 use fsct_protocol::crc::Reading;
@@ -23,13 +24,8 @@ impl Side {
     /// Every transition of the machines of this side, by the names the record uses: the SCL's, and of an FS-Master the OSSDe
     /// qualifier handler's (Table 43).
     pub fn transitions(self) -> Vec<String> {
-        match self {
-            Side::Device => (20..=31).map(|number| format!("T{number}")).collect(),
-            Side::Master => {
-                let ossde = (1..=6).map(|number| format!("OSSDe T{number}"));
-                (1..=14).map(|number| format!("T{number}")).chain(ossde).collect()
-            }
-        }
+        let machines = Machine::ALL.into_iter().filter(|machine| machine.side() == self);
+        machines.flat_map(Machine::transitions).collect()
     }
 
     /// What was sent to the DUT, field by field; `None` was lost on the way.

@@ -1,7 +1,10 @@
 //! `report.html`: one file, readable without script and without network.
 
 use crate::case_html::{self, Room};
+use crate::decode::Side;
+use crate::duts::Duts;
 use crate::journal::Run;
+use crate::machine::Machine;
 use crate::record::{CaseRecord, DutInfo, Execution, Verdict};
 use crate::summary::Summary;
 use crate::text::{short, visible as clean};
@@ -18,6 +21,8 @@ const IN_FULL: usize = 3;
 const ROOM: (usize, usize) = (2_000_000, 1_000_000);
 /// Points of a sweep listed for one id.
 const LISTED: usize = 120;
+/// DUTs whose facts are shown.
+const DUTS: usize = 16;
 /// Characters of a name shown in headings and facts.
 const NAME: usize = 120;
 
@@ -25,9 +30,9 @@ const NAME: usize = 120;
 pub fn render(run: &Run) -> String {
     let summary = Summary::of(run);
     let products = run.header.duts.iter().map(|dut| short(&dut.product, NAME)).filter(|product| !product.is_empty());
-    let products = products.collect::<Vec<_>>().join(", ");
+    let products = short(&products.take(DUTS).collect::<Vec<_>>().join(", "), 3 * NAME);
     let title = format!("fsct: {products}");
-    let room = Room::default();
+    let room = Room::new(Duts::of(&run.header));
     let markup = html! {
         (DOCTYPE)
         html lang="en" {
@@ -112,17 +117,34 @@ fn incomplete(run: &Run, summary: &Summary) -> Markup {
 }
 
 fn facts(run: &Run, summary: &Summary) -> Markup {
-    let name = |text: &str| short(text, NAME);
-    let own_words = |dut: &DutInfo| {
-        let words = [&dut.vendor, &dut.product, &dut.version].map(|text| name(text));
-        words.into_iter().filter(|text| !text.is_empty()).collect::<Vec<_>>()
-    };
+    let duts = &run.header.duts;
     html! {
-        @for dut in &run.header.duts { dl {
-            dt { "Device under test" }
+        dl {
+            dt { "Seed" } dd { (summary.seed) }
+            dt { "Cases" } dd { (summary.cases) " of " (summary.planned) " planned, " (summary.not_applicable) " more do not apply" }
+        }
+        @for (number, dut) in duts.iter().enumerate().take(DUTS) {
+            h2 {
+                @match Duts::of(&run.header).label(number) { None => "Device under test", Some(label) => (label) }
+                ": " (role(&dut.role))
+            }
+            (facts_of(dut))
+        }
+        @if duts.len() > DUTS { p.soft { (duts.len() - DUTS) " more devices under test are in run.jsonl." } }
+    }
+}
+
+/// What a DUT says of itself, and how it was reached.
+fn facts_of(dut: &DutInfo) -> Markup {
+    let name = |text: &str| short(text, NAME);
+    let words = [&dut.vendor, &dut.product, &dut.version].map(|text| name(text));
+    let own_words: Vec<String> = words.into_iter().filter(|text| !text.is_empty()).collect();
+    html! {
+        dl {
+            dt { "Product" }
             // A DUT that was reached names its clock.
             @if dut.clock.is_empty() { dd { "not reached: nothing is known of it" } }
-            @else { dd { (own_words(dut).join(" · ")) span.soft { " in its own words" } } }
+            @else { dd { (own_words.join(" · ")) span.soft { " in its own words" } } }
             dt { "Address" } dd { code { (short(&dut.url, 4 * NAME)) } }
             dt { "Role" } dd { (name(&dut.role)) }
             @if !dut.clock.is_empty() {
@@ -133,24 +155,53 @@ fn facts(run: &Run, summary: &Summary) -> Markup {
                 dt { "Offers" } dd { @for offer in dut.offers.iter().take(LISTED) { (name(offer)) br; } }
             }
             dt { "Profile" } dd { (name(&dut.profile)) }
-        } }
-        dl {
-            dt { "Seed" } dd { (summary.seed) }
-            dt { "Cases" } dd { (summary.cases) " of " (summary.planned) " planned, " (summary.not_applicable) " more do not apply" }
         }
     }
 }
 
+/// A role of a record in the standard's words.
+fn role(role: &str) -> String {
+    match role {
+        "device" => "FS-Device".to_owned(),
+        "master" => "FS-Master".to_owned(),
+        other => short(other, NAME),
+    }
+}
+
+/// The transitions of every machine there is a DUT for, and what else a record may hold.
 fn coverage(summary: &Summary) -> Markup {
-    let taken = summary.transitions.values().filter(|count| **count > 0).count();
-    let mut transitions: Vec<_> = summary.transitions.iter().collect();
-    transitions.sort_by_key(|(name, _)| (name.len(), *name));
+    let count = |name: &String| summary.transitions.get(name).copied();
+    let machines = Machine::ALL.map(|machine| (machine, machine.transitions()));
+    let known = |name: &String| machines.iter().any(|(_, names)| names.contains(name));
+    let others: Vec<String> = summary.transitions.keys().filter(|name| !known(name)).cloned().collect();
+    let present = machines.iter().filter(|(_, names)| names.iter().any(|name| count(name).is_some()));
     html! {
-        h2 { "Transitions of the DUT" }
-        p { (taken) " of " (transitions.len()) " were taken" @if taken < transitions.len() { "; the others are marked “never”" } "." }
+        h2 { "Transitions" }
+        @for (machine, names) in present {
+            @let taken = names.iter().filter(|name| count(name).is_some_and(|count| count > 0)).count();
+            h3 { (machine.title()) (together(machine.side(), summary)) }
+            p { (taken) " of " (names.len()) " were taken" @if taken < names.len() { "; the others are marked “never”" } "." }
+            (cells(names, count))
+        }
+        @if !others.is_empty() {
+            h3 { "Of no known machine" }
+            (cells(&others, count))
+        }
+    }
+}
+
+/// Says that counts are over several DUTs.
+fn together(side: Side, summary: &Summary) -> Markup {
+    let duts = summary.duts.iter().filter(|dut| Side::of(&dut.role) == side).count();
+    html! { @if duts > 1 { span.soft { " · " (duts) " DUTs together" } } }
+}
+
+fn cells(names: &[String], count: impl Fn(&String) -> Option<u64>) -> Markup {
+    html! {
         ul.cells {
-            @for (name, count) in transitions {
-                li.none[*count == 0] { span.word { (clean(name)) } " " @if *count == 0 { "never" } @else { "× " (count) } }
+            @for name in names.iter().take(LISTED) {
+                @let count = count(name).unwrap_or(0);
+                li.none[count == 0] { span.word { (short(name, NAME)) } " " @if count == 0 { "never" } @else { "× " (count) } }
             }
         }
     }
@@ -185,7 +236,7 @@ fn tolerances(run: &Run, summary: &Summary) -> Markup {
 }
 
 /// What needs a reader: failures first, then what was not executed, what is open, and remarks.
-fn attention(run: &Run, room: &Room) -> Markup {
+fn attention(run: &Run, room: &Room<'_>) -> Markup {
     room.add(ROOM.0);
     let groups = [
         ("Failures", "fail"),
@@ -207,17 +258,18 @@ fn attention(run: &Run, room: &Room) -> Markup {
 
 /// Cases that were never tried have nothing to show but why; one line a reason, or they would bury the others.
 fn not_begun(run: &Run) -> Markup {
-    let mut reasons: BTreeMap<String, Vec<&str>> = BTreeMap::new();
+    let duts = Duts::of(&run.header);
+    let mut reasons: BTreeMap<(Option<String>, String), Vec<&str>> = BTreeMap::new();
     for case in run.cases.iter().filter(|case| word(case).1 == "not-begun") {
         let why = case.reasons.first().map_or("no reason is recorded", |reason| &reason.observed);
-        reasons.entry(short(why, 2 * NAME)).or_default().push(&case.key);
+        reasons.entry((duts.of_case(case), short(why, 2 * NAME))).or_default().push(&case.key);
     }
     html! {
         @if !reasons.is_empty() {
             h2 { "Not begun (" (reasons.values().map(Vec::len).sum::<usize>()) ")" }
-            @for (why, keys) in &reasons {
+            @for ((dut, why), keys) in &reasons {
                 details {
-                    summary { span.word.not-begun { "! " (keys.len()) " cases" } ": " (why) }
+                    summary { span.word.not-begun { "! " (keys.len()) " cases" } (of(dut.as_deref())) ": " (why) }
                     p.keys { (listed(keys.iter().copied())) }
                 }
             }
@@ -225,27 +277,38 @@ fn not_begun(run: &Run) -> Markup {
     }
 }
 
-fn group(cases: &[&CaseRecord], room: &Room) -> Markup {
-    let mut by_id: BTreeMap<&str, Vec<&CaseRecord>> = BTreeMap::new();
-    cases.iter().for_each(|case| by_id.entry(&case.id).or_default().push(case));
+/// Says which DUT, when there is a choice.
+fn of(dut: Option<&str>) -> Markup {
+    html! { @if let Some(dut) = dut { " · " (dut) } }
+}
+
+/// Cases by id and DUT.
+fn by_id<'c>(cases: impl Iterator<Item = &'c CaseRecord>) -> BTreeMap<(&'c str, usize), Vec<&'c CaseRecord>> {
+    let mut by_id: BTreeMap<(&str, usize), Vec<&CaseRecord>> = BTreeMap::new();
+    cases.for_each(|case| by_id.entry((&case.id, case.dut)).or_default().push(case));
+    by_id
+}
+
+fn group(cases: &[&CaseRecord], room: &Room<'_>) -> Markup {
     let mut shown = Vec::new();
-    let mut unshown: Vec<&str> = Vec::new();
-    for (id, cases) in by_id {
+    let mut unshown: Vec<String> = Vec::new();
+    for ((id, dut), cases) in by_id(cases.iter().copied()) {
         let first = cases.iter().take(IN_FULL).map_while(|case| case_html::full(case, room));
         let first: Vec<Markup> = first.collect();
         let others = cases.get(first.len()..).unwrap_or_default();
         if first.is_empty() {
-            unshown.extend(others.iter().map(|case| case.key.as_str()));
+            let on = room.duts().label(dut).map_or_else(String::new, |dut| format!(" on {dut}"));
+            unshown.extend(others.iter().map(|case| format!("{}{on}", short(&case.key, NAME))));
         } else {
-            shown.push((id, first, others.to_vec()));
+            shown.push((id, dut, first, others.to_vec()));
         }
     }
     html! {
-        @for (id, first, others) in &shown {
+        @for (id, dut, first, others) in &shown {
             @for case in first { (case) }
             @if !others.is_empty() {
                 details {
-                    summary { (others.len()) " more of " (clean(id)) " like these" }
+                    summary { (others.len()) " more of " (clean(id)) " like these" (of(room.duts().label(*dut).as_deref())) }
                     p.keys { (keys(others)) }
                 }
             }
@@ -253,34 +316,32 @@ fn group(cases: &[&CaseRecord], room: &Room) -> Markup {
         @if !unshown.is_empty() {
             details {
                 summary { (unshown.len()) " more, not shown to keep this page small; all of them are in run.jsonl" }
-                p.keys { (listed(unshown.iter().copied())) }
+                p.keys { (listed(unshown.iter().map(String::as_str))) }
             }
         }
     }
 }
 
-fn suites(run: &Run, room: &Room) -> Markup {
-    let mut suites: BTreeMap<&str, BTreeMap<&str, Vec<&CaseRecord>>> = BTreeMap::new();
-    for case in &run.cases {
-        suites.entry(&case.suite).or_default().entry(&case.id).or_default().push(case);
-    }
+fn suites(run: &Run, room: &Room<'_>) -> Markup {
+    let mut suites: BTreeMap<&str, Vec<&CaseRecord>> = BTreeMap::new();
+    run.cases.iter().for_each(|case| suites.entry(&case.suite).or_default().push(case));
     room.add(ROOM.1);
     html! {
         h2 { "All cases" }
-        @for (suite, ids) in &suites {
-            h3 { (clean(suite)) span.soft { " · " (ids.values().map(Vec::len).sum::<usize>()) " cases" } }
-            @for (id, cases) in ids { (row(id, cases, room)) }
+        @for (suite, cases) in &suites {
+            h3 { (clean(suite)) span.soft { " · " (cases.len()) " cases" } }
+            @for ((id, dut), cases) in by_id(cases.iter().copied()) { (row(id, dut, &cases, room)) }
         }
     }
 }
 
-/// An id: verdicts, points, and one of its cases, the first that is not shown above.
-fn row(id: &str, cases: &[&CaseRecord], room: &Room) -> Markup {
+/// An id on a DUT: verdicts, points, and one of its cases, the first that is not shown above.
+fn row(id: &str, dut: usize, cases: &[&CaseRecord], room: &Room<'_>) -> Markup {
     let mut counts: BTreeMap<(&str, &str), usize> = BTreeMap::new();
     cases.iter().for_each(|case| *counts.entry(word(case)).or_default() += 1);
     let title = cases.first().map_or_else(String::new, |case| short(&case.title, NAME));
     let heading = html! {
-        span.word { (clean(id)) } " " (title)
+        span.word { (clean(id)) } " " (title) (of(room.duts().label(dut).as_deref()))
         @for ((said, class), count) in &counts { " · " span class=(class) { (said) " × " (count) } }
     };
     let details = html! {

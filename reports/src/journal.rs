@@ -100,7 +100,9 @@ pub enum ReadError {
         what: String,
     },
     /// Another version of the schema.
-    #[error("{path}: schema `{found}` is not known, this fsct reads `{SCHEMA}`; use the version of fsct that wrote it")]
+    #[error(
+        "{path}: the record has schema `{found}`, this fsct reads `{SCHEMA}`; use the version of fsct that wrote it"
+    )]
     Schema {
         /// The file.
         path: String,

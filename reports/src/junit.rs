@@ -3,8 +3,12 @@
 //! A failure is a failure. Whatever else must not look green is an error: a case that was not executed as meant (its type
 //! says how), and one that stayed open (type `inconclusive`). What does not apply is skipped, with the term that excluded
 //! it. Remarks pass, and say why in their output. No time of day is written: the same record gives the same octets.
+//!
+//! A suite names in its properties `profile`, `dut`, `url` the DUTs its cases are about, one after the other; in a run of several
+//! DUTs each test case has a property `dut` too, with the same text.
 
 use crate::decode::Side;
+use crate::duts::Duts;
 use crate::journal::Run;
 use crate::record::{CaseRecord, Execution, Header, Verdict};
 use crate::story::{headline, story};
@@ -24,29 +28,61 @@ const LEFT_OUT: &str = "not-applicable";
 /// # Errors
 /// What the writer says.
 pub fn render(run: &Run) -> Result<String, SerializeError> {
-    let mut suites: BTreeMap<&str, Vec<TestCase>> = BTreeMap::new();
+    let duts = Duts::of(&run.header);
+    let mut suites: BTreeMap<&str, Suite> = BTreeMap::new();
     for case in &run.cases {
-        suites.entry(&case.suite).or_default().push(test_case(case, &run.header));
+        let suite = suites.entry(&case.suite).or_default();
+        suite.cases.push(test_case(case, &run.header));
+        suite.duts.insert(case.dut);
     }
     for (key, term) in &run.header.not_applicable {
-        suites.entry(LEFT_OUT).or_default().push(left_out(key, term));
+        let suite = suites.entry(LEFT_OUT).or_default();
+        suite.cases.push(left_out(key, term));
+        // Of several DUTs the record does not say which one a case was left out for.
+        if run.header.duts.len() == 1 {
+            suite.duts.insert(0);
+        }
     }
     let mut report = Report::new("fsct");
     let mut names = BTreeSet::new();
-    for (name, mut cases) in suites {
+    for (name, Suite { mut cases, duts: meant }) in suites {
         cases.iter_mut().for_each(|case| make_unique(case, &mut names));
         let mut suite = TestSuite::new(clean(name));
         suite.set_time(cases.iter().filter_map(|case| case.time).fold(Duration::ZERO, Duration::saturating_add));
         suite.add_property(Property::new("seed", run.header.seed.to_string()));
-        for dut in &run.header.duts {
-            suite.add_property(Property::new("profile", clean(&dut.profile)));
-            suite.add_property(Property::new("dut", clean(&format!("{} {}", dut.product, dut.version))));
-            suite.add_property(Property::new("url", clean(&dut.url)));
-        }
+        meant.into_iter().flat_map(|number| properties(number, duts)).for_each(|(name, value)| {
+            suite.add_property(Property::new(name, clean(&value)));
+        });
         suite.add_test_cases(cases);
         report.add_test_suite(suite);
     }
     report.to_string()
+}
+
+/// Cases of a suite, and the DUTs they are about.
+#[derive(Default)]
+struct Suite {
+    cases: Vec<TestCase>,
+    duts: BTreeSet<usize>,
+}
+
+/// What a suite says of a DUT its cases are about.
+fn properties(number: usize, duts: Duts<'_>) -> Vec<(&'static str, String)> {
+    let named = ("dut", dut_name(number, duts));
+    match duts.get(number) {
+        None => vec![named],
+        Some(dut) => vec![("profile", dut.profile.clone()), named, ("url", dut.url.clone())],
+    }
+}
+
+/// Product and version; behind the number of the DUT when there are several.
+fn dut_name(number: usize, duts: Duts<'_>) -> String {
+    let words = duts.get(number).map(|dut| format!("{} {}", dut.product, dut.version)).unwrap_or_default();
+    match (duts.label(number), words.trim()) {
+        (None, words) => words.to_owned(),
+        (Some(label), "") => label,
+        (Some(_), words) => format!("DUT {}: {words}", number.saturating_add(1)),
+    }
 }
 
 /// Consumers keep only the first of equal names, so a key that stands twice in a record is numbered.
@@ -78,7 +114,9 @@ fn test_case(case: &CaseRecord, header: &Header) -> TestCase {
     let requirements = case.requirements.iter().map(|it| format!("{} (clause {}, {})", it.id, it.clause, it.level));
     let sweep = case.sweep.iter().map(|(name, value)| format!("{name}={value}"));
     let transitions = case.transitions.iter().map(|(name, count)| format!("{name} x {count}"));
+    let duts = Duts::of(header);
     for (name, value) in [
+        ("dut", duts.label(case.dut).map_or_else(String::new, |_| dut_name(case.dut, duts))),
         ("title", case.title.clone()),
         ("place", case.place.clone()),
         ("requirements", joined(requirements)),

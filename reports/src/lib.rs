@@ -3,9 +3,11 @@
 mod case_html;
 mod chart;
 pub mod decode;
+mod duts;
 mod html;
 mod journal;
 mod junit;
+mod machine;
 pub mod record;
 mod story;
 mod summary;

@@ -1,7 +1,7 @@
 //! A case told in lines of text: why it ended as it did, what crossed the boundary around the finding, how to run it again.
 
 use crate::decode::Side;
-use crate::record::{CaseRecord, Entry, Reason, VariantInfo, What};
+use crate::record::{CaseRecord, Entry, Reason, What};
 use crate::summary::verdict_name;
 use std::fmt::Write as _;
 
@@ -54,10 +54,11 @@ pub fn around(case: &CaseRecord, side: Side) -> String {
     if from == to {
         return text;
     }
+    let ports = Ports::of(case);
     let _ = writeln!(text, "entries {} to {to} of {entries}, > to the DUT, < from it:", from + 1);
     for (index, entry) in case.trace.iter().enumerate().take(to).skip(from) {
         let mark = if finding == Some(index) { "=>" } else { "  " };
-        let _ = writeln!(text, "{mark} {:>11} ms  {}", milliseconds(entry.at), told(entry, &case.variant, side));
+        let _ = writeln!(text, "{mark} {:>11} ms  {}", milliseconds(entry.at), told(entry, case, side, ports));
     }
     text
 }
@@ -67,31 +68,79 @@ pub fn milliseconds(nanoseconds: u64) -> String {
     format!("{:.3}", nanoseconds as f64 / 1e6)
 }
 
-/// What crossed the boundary, when it was no process data.
-pub fn note(what: &What) -> String {
+/// Which ports a case uses: one is named when it is another than 1, or when there are several.
+#[derive(Copy, Clone, Debug)]
+pub struct Ports {
+    several: bool,
+}
+
+impl Ports {
+    /// Those of a case.
+    pub fn of(case: &CaseRecord) -> Ports {
+        let mut ports = case.trace.iter().filter_map(|entry| port(&entry.what)).filter(|port| *port > 0);
+        let first = ports.next();
+        Ports { several: ports.any(|port| Some(port) != first) }
+    }
+
+    /// `port 2`, when the entry is on a port that has to be named; port 0 is the whole DUT.
+    pub fn name(self, what: &What) -> Option<String> {
+        match port(what)? {
+            0 => Some("whole DUT".to_owned()),
+            1 if !self.several => None,
+            port => Some(format!("port {port}")),
+        }
+    }
+
+    /// The text, behind the port it is about when that has to be named.
+    pub fn behind(self, what: &What, text: &str) -> String {
+        self.name(what).map_or_else(|| text.to_owned(), |port| format!("{port} · {text}"))
+    }
+}
+
+const fn port(what: &What) -> Option<u8> {
     match what {
-        What::Set { port: 1, service, value } => format!("{service} := {value}"),
-        What::Set { port, service, value } => format!("port {port}: {service} := {value}"),
-        What::Service { port: 1, service, value } => format!("{service} = {value}"),
-        What::Service { port, service, value } => format!("port {port}: {service} = {value}"),
-        What::Port { port, text, .. } => format!("port {port}: {text}"),
-        What::Smi { request, result } => format!("{request} -> {result}"),
+        What::Exchange { port, .. } | What::Set { port, .. } | What::Service { port, .. } | What::Port { port, .. } => {
+            Some(*port)
+        }
+        What::Power { .. } | What::Acyclic { .. } | What::Smi { .. } | What::Event { .. } => None,
+    }
+}
+
+/// What crossed the boundary, when it was no process data: one text, of a request through the SMI its result as a second.
+pub fn notes(what: &What, ports: Ports) -> Vec<String> {
+    let text = match what {
+        What::Set { service, value, .. } => format!("{service} := {value}"),
+        What::Service { service, value, .. } => format!("{service} = {value}"),
+        What::Port { text, .. } => text.clone(),
+        What::Smi { request, result } => return vec![request.clone(), result.clone()],
         What::Power { on } => format!("power {}", if *on { "on" } else { "off" }),
         What::Acyclic { request, answer } => format!("{request} {answer}"),
         What::Event { code, qualifier } => format!("Event 0x{code:04X} qualifier 0x{qualifier:02X}"),
         What::Exchange { .. } => String::new(),
-    }
+    };
+    vec![ports.behind(what, &text)]
 }
 
-fn told(entry: &Entry, variant: &VariantInfo, side: Side) -> String {
+/// Two directions, one below the other.
+fn there_and_back(there: &str, back: &str) -> String {
+    format!("> {there}\n{:19}< {back}", "")
+}
+
+fn told(entry: &Entry, case: &CaseRecord, side: Side, ports: Ports) -> String {
     let count = if entry.count > 1 { format!(" (x {})", entry.count) } else { String::new() };
     let via = if entry.via.is_empty() { String::new() } else { format!("  {}", entry.via.join(" ")) };
     let remark = if entry.note.is_empty() { String::new() } else { format!("  [{}]", entry.note) };
-    match &entry.what {
-        What::Exchange { sent, got, .. } => {
-            let (sent, got) = (side.sent(sent.as_deref(), variant), side.got(got.as_deref(), variant));
-            format!("> {sent}{remark}{count}\n{:19}< {got}{via}", "")
+    let variant = &case.variant;
+    match (&entry.what, notes(&entry.what, ports).as_slice()) {
+        (what @ What::Exchange { sent, got, .. }, _) => {
+            let sent = ports.behind(what, &side.sent(sent.as_deref(), variant));
+            let got = ports.behind(what, &side.got(got.as_deref(), variant));
+            there_and_back(&format!("{sent}{remark}{count}"), &format!("{got}{via}"))
         }
-        other => format!("{}{count}{via}{remark}", note(other)),
+        (_, [request, result]) => there_and_back(&format!("{request}{remark}{count}"), &format!("{result}{via}")),
+        (What::Port { dut, .. }, notes) => {
+            format!("{} {}{count}{via}{remark}", if *dut { '<' } else { '>' }, notes.concat())
+        }
+        (_, notes) => format!("{}{count}{via}{remark}", notes.concat()),
     }
 }

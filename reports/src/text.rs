@@ -20,6 +20,24 @@ pub fn short(text: &str, most: usize) -> String {
     line.chars().take(most.saturating_sub(1)).chain(['…']).collect()
 }
 
+/// The text on at most so many lines of at most so many characters, with a sign when some was left out; no character is
+/// hostile. There is one line at least. A word is broken only where a line would stay all but empty.
+pub fn wrapped(text: &str, most: usize, lines: usize) -> Vec<String> {
+    let mut rest = short(text, most.saturating_mul(lines));
+    let mut out = Vec::new();
+    while rest.chars().count() > most && out.len() + 1 < lines {
+        let limit = rest.char_indices().nth(most).map_or(rest.len(), |(at, _)| at);
+        let (head, tail) = match rest[..limit].rfind(' ').filter(|at| at * 3 > limit) {
+            Some(at) => (&rest[..at], &rest[at + 1..]),
+            None => rest.split_at(limit),
+        };
+        out.push(head.to_owned());
+        rest = tail.to_owned();
+    }
+    out.push(short(&rest, most));
+    out
+}
+
 const fn is_hostile(c: char) -> bool {
     match c {
         '\n' | '\t' => false,

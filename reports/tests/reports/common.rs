@@ -12,21 +12,38 @@ pub fn header(planned: usize) -> Header {
         schema: SCHEMA.into(),
         fsct: "0.0.0".into(),
         seed: 7,
-        dut: DutInfo {
-            url: "tcp://192.0.2.1:7000".into(),
-            role: "device".into(),
-            vendor: "ACME".into(),
-            product: "Curtain 3000".into(),
-            version: "hw 1 sw 2".into(),
-            pcos: vec!["power".into(), "link".into()],
-            clock: "virtual".into(),
-            resolution_ns: 1,
-            ..DutInfo::default()
-        },
-        profile: "curtain".into(),
+        duts: vec![curtain()],
         planned,
         not_applicable: vec![("FSD-0999[edition=v1.1]".into(), "the DUT does not serve `app`".into())],
         tolerances: BTreeMap::from([("A19".into(), "T29 read sequentially (tolerated)".into())]),
+    }
+}
+
+/// An FS-Device.
+pub fn curtain() -> DutInfo {
+    DutInfo {
+        url: "tcp://192.0.2.1:7000".into(),
+        role: "device".into(),
+        profile: "curtain".into(),
+        vendor: "ACME".into(),
+        product: "Curtain 3000".into(),
+        version: "hw 1 sw 2".into(),
+        pcos: vec!["power".into(), "link".into()],
+        clock: "virtual".into(),
+        resolution_ns: 1,
+        ..DutInfo::default()
+    }
+}
+
+/// An FS-Master.
+pub fn gateway() -> DutInfo {
+    DutInfo {
+        url: "unix:/run/gateway".into(),
+        role: "master".into(),
+        profile: "gateway-of-8".into(),
+        product: "Gateway 8".into(),
+        version: "fw 9".into(),
+        ..curtain()
     }
 }
 
@@ -46,6 +63,8 @@ pub fn passed(number: usize) -> CaseRecord {
         key: format!("FSD-{number:04}[edition=iec2022,mode=crc16,pd=1]"),
         id: format!("FSD-{number:04}"),
         suite: "device-startup".into(),
+        dut: 0,
+        role: "device".into(),
         title: "Start-up of both sides".into(),
         place: "testcases/suites/device-startup.yaml:4".into(),
         sweep: vec![("edition".into(), "iec2022".into()), ("mode".into(), "crc16".into()), ("pd".into(), "1".into())],
@@ -136,6 +155,55 @@ pub fn not_applicable(number: usize) -> CaseRecord {
     case
 }
 
+/// An entry that is no exchange.
+pub fn entry(at_ms: u64, what: What, via: &[&str]) -> Entry {
+    Entry { what, ..exchange(at_ms, "", "", via, "") }
+}
+
+/// Something that happened on a port.
+pub fn on_port(at_ms: u64, port: u8, dut: bool, text: &str) -> Entry {
+    entry(at_ms, What::Port { port, dut, text: text.into() }, &[])
+}
+
+/// A case of the second DUT of [`both`]: a port start, an exchange, a request through the SMI, and OSSDe on another port.
+pub fn mastered(number: usize) -> CaseRecord {
+    let smi = What::Smi {
+        request: "SMI_FSMasterAccess port 0 01000000000000000000".into(),
+        result: "Result(+) 01010000000100000002".into(),
+    };
+    let qualifier = What::Service { port: 2, service: "qualifier".into(), value: "01".into() };
+    CaseRecord {
+        key: format!("FSM-{number:04}[edition=iec2022,mode=crc16,pd=1]"),
+        id: format!("FSM-{number:04}"),
+        suite: "master-startup".into(),
+        dut: 1,
+        role: "master".into(),
+        verdict: Verdict::Fail,
+        reasons: vec![Reason { entry: Some(8), ..reason(Verdict::Fail, "expect/qualifier", "qualifier 1") }],
+        transitions: BTreeMap::from([("T1".into(), 1), ("OSSDe T1".into(), 1), ("OSSDe T3".into(), 2)]),
+        steps: Vec::new(),
+        trace: vec![
+            on_port(0, 1, false, "Device connected: VendorID 0x0001, DeviceID 0x000002, COM3, 6 octets in, 6 out"),
+            on_port(0, 1, true, "L+ on"),
+            on_port(1, 1, true, "wake-up pulse"),
+            on_port(2, 1, true, "writes 0x4202.0 = 00"),
+            on_port(2, 1, false, "the Device answers: written"),
+            exchange(3, "A5FEE46AF6", "0001029D56", &["T1"], ""),
+            entry(4, smi, &[]),
+            Entry { via: vec!["OSSDe T1".into(), "OSSDe T3".into()], ..on_port(5, 2, false, "I/Q driven low") },
+            entry(5, qualifier, &["OSSDe T3"]),
+        ],
+        ..passed(number)
+    }
+}
+
+/// A run that judged an FS-Device and an FS-Master.
+pub fn both() -> Run {
+    let mut run = run(vec![passed(1), failed(2), mastered(3)]);
+    run.header.duts.push(gateway());
+    run
+}
+
 /// A case with a long trace: lost and repeated exchanges, a fault near the end.
 pub fn long(number: usize, entries: u64) -> CaseRecord {
     let mut case = failed(number);
@@ -157,6 +225,10 @@ pub fn hostile(number: usize) -> CaseRecord {
     case.trace[2].note = HOSTILE.into();
     case.trace[2].via.push(HOSTILE.into());
     case.trace[0].what = What::Acyclic { request: HOSTILE.into(), answer: HOSTILE.into() };
+    case.trace.push(on_port(3, 2, true, HOSTILE));
+    case.trace.push(Entry { note: HOSTILE.into(), ..on_port(3, 1, false, HOSTILE) });
+    case.trace.push(entry(3, What::Smi { request: HOSTILE.into(), result: HOSTILE.into() }, &[HOSTILE]));
+    case.transitions.insert(HOSTILE.into(), 1);
     case.tolerances.insert(HOSTILE.into(), HOSTILE.into());
     case
 }

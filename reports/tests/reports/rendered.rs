@@ -22,12 +22,18 @@ fn the_sequence_chart_looks_like_this() {
 }
 
 #[test]
+fn the_chart_and_the_story_of_an_fs_master_look_like_this() {
+    let folder = Folder::with("master-chart", &Run { header: both().header, ..run(vec![mastered(3)]) });
+    render(&folder.0).expect("the record is sound");
+    assert_snapshot!("master_chart", svg(&folder.text("report.html")).replace("><", ">\n<"));
+    assert_snapshot!("master_junit", folder.text("junit.xml"));
+}
+
+#[test]
 fn text_from_a_dut_is_escaped_wherever_it_is_shown() {
     let mut run = run(vec![hostile(1)]);
-    run.header.dut.product = HOSTILE.into();
-    run.header.dut.vendor = HOSTILE.into();
-    run.header.dut.offers = vec![HOSTILE.into()];
-    run.header.profile = HOSTILE.into();
+    let dut = DutInfo { profile: HOSTILE.into(), vendor: HOSTILE.into(), product: HOSTILE.into(), ..curtain() };
+    run.header.duts = vec![DutInfo { role: HOSTILE.into(), offers: vec![HOSTILE.into()], ..dut }; 2];
     run.header.not_applicable.push((HOSTILE.into(), HOSTILE.into()));
     let folder = Folder::with("hostile", &run);
     render(&folder.0).expect("the record is sound");
@@ -56,8 +62,8 @@ fn a_name_of_ten_thousand_characters_does_not_fill_the_page() {
     let mut run = run(vec![passed(1)]);
     let small = Folder::with("small", &run);
     render(&small.0).expect("the record is sound");
-    run.header.dut.product = "x".repeat(10_000);
-    run.header.dut.version = "y".repeat(10_000);
+    run.header.duts[0].product = "x".repeat(10_000);
+    run.header.duts[0].version = "y".repeat(10_000);
     let folder = Folder::with("name", &run);
     render(&folder.0).expect("the record is sound");
     assert!(folder.text("report.html").len() < small.text("report.html").len() + 2_000);
@@ -101,14 +107,184 @@ fn the_finding_stays_in_sight_when_a_long_trace_goes_on_behind_it() {
 #[test]
 fn an_fs_master_under_test_stands_on_the_left_and_is_decoded_as_one() {
     let mut run = run(vec![passed(1)]);
-    run.header.dut.role = "master".into();
+    run.header.duts = vec![gateway()];
+    run.cases[0].role = "master".into();
     run.cases[0].transitions = [("T1".into(), 1)].into();
     run.cases[0].trace[1] = exchange(1, "A5FEE46AF6", "0001029D56", &["T1"], "");
     let html = page("master", &run);
     let chart = svg(&html);
     assert!(chart.contains("FS-Master (DUT)") && chart.contains("FS-Device (tester)"));
     assert!(chart.contains("DCount_i 7 SDset 1 PD") && chart.contains("MCount 0 setSD 1 SD"));
-    assert!(html.contains("1 of 14 were taken"));
+    assert!(html.contains("1 of 14 were taken") && html.contains("0 of 6 were taken"));
+}
+
+#[test]
+fn a_run_of_several_duts_tells_them_apart() {
+    let html = page("both", &both());
+    for text in [
+        "<h1>IO-Link Safety conformance: Curtain 3000, Gateway 8</h1>",
+        "<h2>DUT 1 (Curtain 3000): FS-Device</h2>",
+        "<h2>DUT 2 (Gateway 8): FS-Master</h2>",
+        "<code>unix:/run/gateway</code>",
+        "<dd>gateway-of-8</dd>",
+        "<p>On DUT 1 (Curtain 3000)</p>",
+        "<p>On DUT 2 (Gateway 8)</p>",
+        "FSM-0003</span> Start-up of both sides · DUT 2 (Gateway 8) · ",
+        "<h3>FS-Device</h3><p>2 of 12 were taken",
+        "<h3>FS-Master</h3><p>1 of 14 were taken",
+        "<h3>OSSDe qualifier</h3><p>2 of 6 were taken",
+        "OSSDe T3</span> × 2",
+    ] {
+        assert!(html.contains(text), "{text}");
+    }
+    let one = page("one", &everything());
+    assert!(one.contains("<h2>Device under test: FS-Device</h2>") && one.contains("<h3>FS-Device</h3>"));
+    assert!(!one.contains("DUT 1") && !one.contains("<p>On ") && !one.contains("<h3>FS-Master</h3>"));
+}
+
+#[test]
+fn the_same_case_on_two_duts_is_not_one() {
+    let mut cases: Vec<CaseRecord> = (0..10).map(|_| failed(2)).collect();
+    cases[5..].iter_mut().for_each(|case| case.dut = 1);
+    let mut again = run(cases);
+    again.header.duts.push(DutInfo { product: String::new(), ..curtain() });
+    let html = page("twice", &again);
+    assert!(html.contains("FSD-0002</span> Start-up of both sides · DUT 1 (Curtain 3000) · "));
+    assert!(html.contains("FSD-0002</span> Start-up of both sides · DUT 2 · "));
+    assert!(html.contains("2 more of FSD-0002 like these · DUT 1 (Curtain 3000)"));
+    assert!(html.contains("2 more of FSD-0002 like these · DUT 2<"));
+    assert!(html.contains("<h3>FS-Device<span class=\"soft\"> · 2 DUTs together</span></h3>"));
+}
+
+#[test]
+fn cases_not_begun_are_told_apart_by_dut() {
+    let mut cases: Vec<CaseRecord> = (1..=3).map(|number| lost(number, Execution::Aborted)).collect();
+    cases.iter_mut().for_each(|case| case.trace.clear());
+    cases[2].dut = 1;
+    let html = page("not-begun-both", &Run { header: both().header, ..run(cases) });
+    assert!(html.contains("! 2 cases</span> · DUT 1 (Curtain 3000): ") && html.contains("! 1 cases</span> · DUT 2 ("));
+}
+
+#[test]
+fn a_dut_the_header_does_not_name_is_said_to_be_unknown() {
+    let unknown = CaseRecord { dut: usize::MAX, ..failed(2) };
+    let folder = Folder::with("unknown", &run(vec![unknown]));
+    render(&folder.0).expect("the record is sound");
+    let says = format!("DUT {}, which the header does not name", usize::MAX);
+    assert!(folder.text("report.html").contains(&says));
+    assert!(folder.text("junit.xml").contains(&format!(r#"<property name="dut" value="{says}"/>"#)));
+}
+
+/// The values of a property of the suites and of the test cases of a report.
+fn properties(xml: &str, name: &str) -> Vec<Vec<String>> {
+    let begin = format!(r#"<property name="{name}" value=""#);
+    let values =
+        |text: &str| text.split(&begin).skip(1).map(|it| it[..it.find('"').expect("its end")].to_owned()).collect();
+    xml.split("<testsuite ").skip(1).map(values).collect()
+}
+
+#[test]
+fn a_suite_of_junit_names_the_duts_its_cases_are_about() {
+    let mut mixed = mastered(4);
+    mixed.suite = "device-startup".into();
+    let mut several = both();
+    several.cases.push(mixed);
+    several.header.duts.push(curtain());
+    let folder = Folder::with("properties", &several);
+    render(&folder.0).expect("the record is sound");
+    let xml = folder.text("junit.xml");
+    let (curtain, gateway) = ("DUT 1: Curtain 3000 hw 1 sw 2", "DUT 2: Gateway 8 fw 9");
+    // First what the suite says, then each of its cases.
+    let device = [curtain, gateway, curtain, curtain, gateway].map(String::from).to_vec();
+    assert_eq!(properties(&xml, "dut"), [device, [gateway; 2].map(String::from).to_vec(), vec![]]);
+    let urls = |urls: &[&str]| urls.iter().map(|url| (*url).to_owned()).collect::<Vec<_>>();
+    let (tcp, unix) = ("tcp://192.0.2.1:7000", "unix:/run/gateway");
+    assert_eq!(properties(&xml, "url"), [urls(&[tcp, unix]), urls(&[unix]), vec![]]);
+    assert_eq!(properties(&xml, "profile"), [urls(&["curtain", "gateway-of-8"]), urls(&["gateway-of-8"]), vec![]]);
+}
+
+#[test]
+fn a_run_of_one_dut_names_it_once_a_suite() {
+    let folder = Folder::with("property", &run(vec![passed(1), failed(2)]));
+    render(&folder.0).expect("the record is sound");
+    let curtain = vec!["Curtain 3000 hw 1 sw 2".to_owned()];
+    assert_eq!(properties(&folder.text("junit.xml"), "dut"), [curtain.clone(), curtain]);
+}
+
+/// Left of the FS-Master there is room for 14 characters, twice.
+#[rstest]
+#[case::one(&["T1"], &["T1"])]
+#[case::both_machines(&["T1", "OSSDe T1"], &["T1 OSSDe\u{A0}T1"])]
+#[case::a_name_is_not_broken(&["T12", "T13", "OSSDe T1"], &["T12 T13", "OSSDe\u{A0}T1"])]
+#[case::too_many(&["OSSDe T1", "OSSDe T2", "OSSDe T3", "OSSDe T4"], &["OSSDe\u{A0}T1", "OSSDe\u{A0}T2 OSSD…"])]
+fn transitions_of_an_fs_master_stand_left_of_it(#[case] via: &[&str], #[case] lines: &[&str]) {
+    let trace = vec![
+        exchange(1, "A5FEE46AF6", "0001029D56", via, ""),
+        Entry { at: 0, ..entry(1, What::Power { on: true }, via) },
+    ];
+    let case = CaseRecord { role: "master".into(), trace, steps: Vec::new(), ..passed(1) };
+    let html = page(&format!("beside-{}-{}", via.len(), lines.concat().len()), &run(vec![case]));
+    let shown = svg(&html).split(r#"text-anchor="end">"#).skip(1);
+    let shown: Vec<&str> = shown.map(|text| &text[..text.find('<').expect("its end")]).collect();
+    assert_eq!(shown, [lines, lines].concat());
+}
+
+/// A box stands at the lifeline of the side that acted: 190 is the FS-Master's, 640 the FS-Device's.
+#[rstest]
+#[case::by_an_fs_master_under_test("master", true, 190)]
+#[case::by_the_tester_of_an_fs_master("master", false, 640)]
+#[case::by_an_fs_device_under_test("device", true, 640)]
+#[case::by_the_tester_of_an_fs_device("device", false, 190)]
+fn a_box_stands_at_the_side_that_acted(#[case] role: &str, #[case] dut: bool, #[case] lifeline: i32) {
+    let trace = vec![on_port(1, 1, dut, "L+ on")];
+    let case = CaseRecord { role: role.into(), trace, steps: Vec::new(), ..passed(1) };
+    let html = page(&format!("side-{role}-{dut}"), &run(vec![case]));
+    let chart = svg(&html);
+    assert!(chart.contains(&format!(r#"<rect x="{}""#, lifeline + 6)), "{chart}");
+    assert!(chart.contains(&format!(r#"<text x="{}" y="60">L+ on</text>"#, lifeline + 12)), "{chart}");
+}
+
+/// A port is named when it is another than 1, or when the case uses several.
+#[rstest]
+#[case::port_1_alone(vec![exchange(1, "00", "00", &[], ""), on_port(2, 1, true, "L+ on")], &["L+ on"], "port")]
+#[case::another_port_alone(vec![on_port(2, 3, true, "L+ on")], &["port 3 · L+ on"], "port 1")]
+#[case::two_ports(vec![on_port(1, 1, true, "L+ on"), on_port(2, 2, true, "L+ on")], &["port 1 · L+ on", "port 2 · L+ on"], "port 3")]
+#[case::exchange(vec![entry(1, What::Exchange { port: 2, sent: None, got: None }, &[])], &["port 2 · lost", "port 2 · no process data"], "port 1")]
+#[case::service(vec![entry(1, What::Service { port: 2, service: "qualifier".into(), value: "01".into() }, &[])], &["port 2 · qualifier = 01"], "port 1")]
+#[case::the_whole_dut(vec![entry(1, What::Set { port: 0, service: "FSCP_Authenticity".into(), value: "01".into() }, &[]), on_port(2, 1, true, "L+ on")], &["whole DUT · FSCP_Authenticity := 0", "L+ on"], "port 1")]
+fn a_port_is_named_where_it_says_something(#[case] trace: Vec<Entry>, #[case] says: &[&str], #[case] silent: &str) {
+    let case = CaseRecord { role: "master".into(), trace, steps: Vec::new(), ..failed(1) };
+    let folder = Folder::with(&format!("ports-{}", says.concat().len()), &run(vec![case]));
+    render(&folder.0).expect("the record is sound");
+    let html = folder.text("report.html");
+    let xml = folder.text("junit.xml");
+    let (_, story) = xml.split_once("entries 1 to ").expect("the trace is told");
+    let (story, _) = story.split_once("replay").expect("its end");
+    for text in [svg(&html), story] {
+        assert!(says.iter().all(|says| text.contains(says)), "{text}");
+        assert!(!text.contains(silent), "{text}");
+    }
+}
+
+#[test]
+fn a_long_request_through_the_smi_is_cut_in_the_chart_and_told_in_full() {
+    let (request, result) = (format!("SMI_PortConfiguration port 1 {}", "81".repeat(200)), "90".repeat(25));
+    let smi = What::Smi { request, result: format!("Result(+) {result}") };
+    let case =
+        CaseRecord { role: "master".into(), trace: vec![entry(1, smi, &["T1"])], steps: Vec::new(), ..failed(1) };
+    let folder = Folder::with("smi", &run(vec![case]));
+    render(&folder.0).expect("the record is sound");
+    let html = folder.text("report.html");
+    let chart = svg(&html);
+    let lines: Vec<&str> = chart.split(r#"<text x="202""#).skip(1).collect();
+    assert_eq!(lines.len(), 5, "{chart}");
+    assert!(lines[0].contains(">SMI_PortConfiguration port 1</text>") && lines[2].contains("8…</text>"), "{chart}");
+    assert!(lines[3].contains(">Result(+) 90") && lines[4].contains("90</text>"), "{chart}");
+    assert!(
+        folder
+            .text("junit.xml")
+            .contains(&format!("> SMI_PortConfiguration port 1 {}", "81".repeat(200)).replace('>', "&gt;"))
+    );
 }
 
 #[test]
@@ -290,4 +466,21 @@ fn ten_thousand_cases_are_less_than_five_megabytes(#[case] points: usize, #[case
     let html = page(&format!("large-{points}-{entries}"), &run(cases));
     assert!(html.len() < 5_000_000, "{} octets", html.len());
     assert!(html.contains("FSD-0000") && html.contains("Failures (200)"));
+}
+
+#[test]
+fn ten_thousand_cases_of_two_duts_with_long_requests_are_less_than_five_megabytes() {
+    let smi = What::Smi { request: "52".repeat(100), result: "61".repeat(100) };
+    let cases = (0..10_000)
+        .map(|number| {
+            let mut case = if number % 50 == 7 { mastered(number / 25) } else { passed(number / 25) };
+            case.dut = number % 2;
+            case.trace = (0..20).map(|at| entry(at, smi.clone(), &["T1", "OSSDe T1"])).collect();
+            case.key = format!("{}[point={number}]", case.id);
+            case
+        })
+        .collect();
+    let html = page("large-both", &Run { header: Header { planned: 10_000, ..both().header }, ..run(cases) });
+    assert!(html.len() < 5_000_000, "{} octets", html.len());
+    assert!(html.contains("Failures (200)") && html.contains("<p>On DUT 2 (Gateway 8)</p>"));
 }
