@@ -28,7 +28,8 @@ pub trait Dut: Send {
     /// Carries out `stimuli` in order and appends what was observed, in order, to `observed`.
     ///
     /// Every [`Stimulus::Exchange`] yields exactly one [`Seen::Image`], the last observation of that stimulus. Every
-    /// `Read` and `Write` yields one answer, every `Smi` one result. A stimulus that is not served yields [`Seen::Unsupported`], never nothing.
+    /// `Read` and `Write` yields one answer, every `Smi` one result. A stimulus that is not served yields
+    /// [`Seen::Unsupported`], never nothing.
     ///
     /// Callers keep to [`MAX_BATCH`] stimuli; in a longer batch positions start again at 0 after every [`MAX_BATCH`].
     ///

@@ -49,7 +49,7 @@ pub enum Happened {
     },
     /// An input service of the application was set.
     Set {
-        /// Port, from 1.
+        /// Port, from 1; 0 for the whole DUT.
         port: u8,
         /// Which.
         service: Service,

@@ -4,10 +4,11 @@
 mod common;
 
 use common::*;
-use fsct_adapters::frame::{Decoder, Frame, encode};
+use fsct_adapters::frame::{Decoder, Frame, MAX_PAYLOAD, encode};
 use fsct_adapters::message::*;
 use fsct_adapters::{
-    Address, Description, Dut, DutError, Entry, Happened, Keep, Observation, Recorder, Seen, Stimulus, connect_within,
+    Address, Description, Dut, DutError, Entry, Happened, Keep, Observation, Recorder, Seen, SmiRequest, SmiService,
+    Stimulus, connect_within,
 };
 use rstest::rstest;
 use std::io::{Read, Write};
@@ -80,6 +81,32 @@ fn no_request_is_longer_than_the_dut_takes(#[case] limit: usize, #[case] at_once
     let requests: Vec<_> = requests.iter().collect();
     assert!(requests.iter().all(|(octets, _)| *octets <= limit));
     assert_eq!(requests.iter().map(|(_, stimuli)| *stimuli).collect::<Vec<_>>(), [at_once; 3]);
+}
+
+/// Of 512 octets, 2 are the number of stimuli, 3 head of the TLV and 6 what stands before the ArgBlock.
+#[rstest]
+#[case::fits(501, true)]
+#[case::one_octet_more(502, false)]
+fn an_arg_block_is_bounded_by_what_the_dut_takes(#[case] octets: usize, #[case] fits: bool) {
+    let request =
+        SmiRequest { service: SmiService::ParServToDs, port: 1, client_id: 0, expected: 0, octets: vec![1; octets] };
+    let stimuli = [Stimulus::Smi(Box::new(request))];
+    let mut payload = Vec::new();
+    assert_eq!(pack_apply(&stimuli, MIN_PAYLOAD, MAX_STIMULI, &mut payload), usize::from(fits));
+    assert_eq!(unpack_apply(&payload), Ok(stimuli[..usize::from(fits)].to_vec()));
+}
+
+/// The longest there is by the standard: FSPortStatusList with 255 diagnoses.
+#[test]
+fn a_result_is_bounded_by_the_frame_alone() {
+    let result = status(1, 2);
+    assert_eq!(result.octets.len(), 16 + 3 * 255);
+    let observations = [seen(0, 0, Seen::Smi(Box::new(result)))];
+    let mut payload = Vec::new();
+    assert_eq!(pack_observed(&observations, MAX_PAYLOAD, &mut payload), 1);
+    let mut unpacked = Vec::new();
+    assert_eq!(unpack_observed(&payload, &mut unpacked), Ok(false));
+    assert_eq!(unpacked, observations);
 }
 
 #[cfg(unix)]

@@ -3,7 +3,8 @@
 
 use fsct_adapters::message::*;
 use fsct_adapters::{
-    Clock, ClockKind, Description, Observation, Octets, Offer, Pco, Role, Seen, Service, Stimulus, Variant,
+    Clock, ClockKind, Description, Identity, Line, Mode, Observation, Octets, Offer, Pco, Response, Role, Seen,
+    Service, SmiRequest, SmiResult, SmiService, Source, Stimulus, Variant,
 };
 use fsct_protocol::{Edition, ProtMode};
 use proptest::collection::vec;
@@ -42,8 +43,58 @@ fn stimulus() -> impl Strategy<Value = Stimulus> {
         }),
         (any::<u8>(), service(), image()).prop_map(|(port, service, value)| Stimulus::Set { port, service, value }),
         any::<u64>().prop_map(|ns| Stimulus::Advance { ns }),
-        (8..=u8::MAX, vec(any::<u8>(), 0..=255)).prop_map(|(kind, octets)| Stimulus::Other { kind, octets }),
+        (any::<u8>(), option::of(identity())).prop_map(|(port, device)| Stimulus::Plug { port, device }),
+        (any::<u8>(), response()).prop_map(|(port, response)| Stimulus::Respond { port, response }),
+        (any::<u8>(), any::<u16>(), any::<u8>()).prop_map(|(port, code, qualifier)| Stimulus::Raise {
+            port,
+            code,
+            qualifier
+        }),
+        (any::<u8>(), line(), any::<bool>()).prop_map(|(port, line, level)| Stimulus::Drive { port, line, level }),
+        smi_request().prop_map(|request| Stimulus::Smi(Box::new(request))),
+        (13..=u8::MAX, vec(any::<u8>(), 0..=255)).prop_map(|(kind, octets)| Stimulus::Other { kind, octets }),
     ]
+}
+
+fn line() -> impl Strategy<Value = Line> {
+    select(&Line::ALL[..]).prop_map(|entry| entry.0)
+}
+
+fn identity() -> impl Strategy<Value = Identity> {
+    // DeviceID has three octets.
+    (any::<[u8; 5]>(), any::<u16>(), 0u32..1 << 24).prop_map(|(octets, vendor_id, device_id)| {
+        let [revision_id, com, min_cycle_time, pd_in, pd_out] = octets;
+        Identity { revision_id, com, min_cycle_time, pd_in, pd_out, vendor_id, device_id }
+    })
+}
+
+fn response() -> impl Strategy<Value = Response> {
+    prop_oneof![
+        vec(any::<u8>(), 0..=232).prop_map(Response::Value),
+        Just(Response::Written),
+        any::<u16>().prop_map(Response::Refused),
+    ]
+}
+
+fn smi_request() -> impl Strategy<Value = SmiRequest> {
+    let service = select(&SmiService::ALL[..]).prop_map(|entry| entry.0);
+    (service, any::<u8>(), any::<u16>(), any::<u16>(), vec(any::<u8>(), 0..=255)).prop_map(
+        |(service, port, client_id, expected, octets)| SmiRequest { service, port, client_id, expected, octets },
+    )
+}
+
+fn smi_result() -> impl Strategy<Value = SmiResult> {
+    let numbers = (any::<u16>(), any::<u16>(), any::<u16>());
+    (any::<u8>(), any::<bool>(), numbers, vec(any::<u8>(), 0..300)).prop_map(
+        |(port, positive, (client_id, reference, length), octets)| SmiResult {
+            port,
+            client_id,
+            positive,
+            reference,
+            length,
+            octets,
+        },
+    )
 }
 
 fn observation() -> impl Strategy<Value = Observation> {
@@ -55,6 +106,13 @@ fn observation() -> impl Strategy<Value = Observation> {
         any::<u16>().prop_map(|error| Seen::Refused { error }),
         (any::<u16>(), any::<u8>()).prop_map(|(code, qualifier)| Seen::Event { code, qualifier }),
         Just(Seen::Unsupported),
+        (any::<u8>(), select(&Mode::ALL[..])).prop_map(|(port, mode)| Seen::Mode { port, mode: mode.0 }),
+        (any::<u8>(), any::<u16>(), any::<u8>(), option::of(vec(any::<u8>(), 0..=232)))
+            .prop_map(|(port, index, subindex, data)| Seen::Request { port, index, subindex, data }),
+        (any::<u8>(), line(), any::<bool>()).prop_map(|(port, line, level)| Seen::Line { port, line, level }),
+        smi_result().prop_map(|result| Seen::Smi(Box::new(result))),
+        (any::<u8>(), select(&[Source::Device, Source::Port][..]), any::<u8>(), any::<u16>())
+            .prop_map(|(port, source, qualifier, code)| Seen::Indication { port, source, qualifier, code }),
     ];
     (any::<u16>(), any::<u64>(), seen).prop_map(|(stimulus, at, seen)| Observation { stimulus, at, seen })
 }
@@ -157,7 +215,7 @@ proptest! {
     }
 }
 
-/// Kinds 1 to 7 with a value they cannot have, and kinds nobody knows.
+/// Kinds 1 to 12 with a value they cannot have, and kinds nobody knows.
 #[rstest]
 #[case::configure_of_another_edition(1, &[3, 1, 0, 0])]
 #[case::configure_of_another_mode(1, &[1, 3, 0, 0])]
@@ -169,9 +227,26 @@ proptest! {
 #[case::read_without_subindex(4, &[0, 0])]
 #[case::write_without_subindex(5, &[0, 0])]
 #[case::service_7(6, &[1, 7])]
+#[case::service_26(6, &[0, 26])]
 #[case::advance_of_7_octets(7, &[0; 7])]
 #[case::never_assigned(0, &[])]
-#[case::later_version(8, &[1, 2, 3])]
+#[case::plug_into_nowhere(8, &[])]
+#[case::plug_of_9_octets(8, &[1; 10])]
+#[case::plug_of_11_octets(8, &[1; 12])]
+#[case::respond_nothing(9, &[1])]
+#[case::respond_in_a_fourth_way(9, &[1, 4])]
+#[case::respond_written_with_octets(9, &[1, 2, 0])]
+#[case::respond_with_half_an_error_type(9, &[1, 3, 0x80])]
+#[case::respond_with_more_than_an_error_type(9, &[1, 3, 0x80, 0x22, 0])]
+#[case::raise_without_qualifier(10, &[1, 0xB0, 0])]
+#[case::drive_line_0(11, &[1, 0, 1])]
+#[case::drive_line_5(11, &[1, 5, 1])]
+#[case::drive_half_high(11, &[1, 2, 2])]
+#[case::drive_without_level(11, &[1, 2])]
+#[case::smi_service_0(12, &[0, 1, 0, 0, 0, 0])]
+#[case::smi_service_19(12, &[19, 1, 0, 0, 0, 0])]
+#[case::smi_without_its_numbers(12, &[1, 1, 0, 0, 0])]
+#[case::later_version(13, &[1, 2, 3])]
 #[case::made_up(255, &[0; 300])]
 fn what_is_not_known_is_kept_to_be_answered_unsupported(#[case] kind: u8, #[case] value: &[u8]) {
     let length = (value.len() as u16).to_be_bytes();
@@ -201,7 +276,22 @@ fn malformed_stimuli(#[case] payload: &[u8], #[case] text: &str) {
 #[case(5, &[0], "a refusal has 1 octets")]
 #[case(6, &[0, 0], "an Event has 2 octets")]
 #[case(7, &[0], "an answer \"unsupported\" has 1 octets")]
-#[case(8, &[], "the kind of an observation is 8, which version 1 does not know")]
+#[case(8, &[1], "a mode has 1 octets")]
+#[case(8, &[1, 2, 3], "a mode has 3 octets")]
+#[case(8, &[1, 4], "a mode is 4, which version 1 does not know")]
+#[case(9, &[1, 0, 0x42, 2], "on-request data has 4 octets")]
+#[case(9, &[1, 0, 0x42, 2, 0, 9], "a read of on-request data has 6 octets")]
+#[case(9, &[1, 2, 0x42, 2, 0], "the direction of on-request data is 2, which version 1 does not know")]
+#[case(10, &[1, 1], "a line has 2 octets")]
+#[case(10, &[1, 0, 1], "a line is 0, which version 1 does not know")]
+#[case(10, &[1, 5, 1], "a line is 5, which version 1 does not know")]
+#[case(10, &[1, 1, 2], "the level of a line is 2, which version 1 does not know")]
+#[case(11, &[1, 1, 0, 0, 0, 0, 0], "the result of an SMI service has 7 octets")]
+#[case(11, &[1, 2, 0, 0, 0, 0, 0, 0], "the sign of a result is 2, which version 1 does not know")]
+#[case(12, &[1, 1, 0x74, 0x20], "an Event indicated by an FS-Master has 4 octets")]
+#[case(12, &[1, 1, 0x74, 0x20, 2, 0], "an Event indicated by an FS-Master has 6 octets")]
+#[case(12, &[1, 3, 0x74, 0x20, 2], "the source of an Event is 3, which version 1 does not know")]
+#[case(13, &[], "the kind of an observation is 13, which version 1 does not know")]
 fn malformed_observations(#[case] kind: u8, #[case] value: &[u8], #[case] text: &str) {
     let payload = [&[0, 0, 0][..], &[0; 8], &[kind, 0, value.len() as u8], value].concat();
     assert_eq!(unpack_observed(&payload, &mut Vec::new()).unwrap_err().to_string(), text);

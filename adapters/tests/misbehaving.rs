@@ -7,8 +7,8 @@ use common::*;
 use fsct_adapters::frame::{Decoder, Frame, MAX_GARBAGE, encode};
 use fsct_adapters::message::*;
 use fsct_adapters::{
-    Dut, DutError, FLOOD_PER_STIMULUS, FLOOD_SLACK, Fault, Observation, Octets, Offer, Role, Seen, Service, Stimulus,
-    connect_within,
+    Dut, DutError, FLOOD_PER_STIMULUS, FLOOD_SLACK, Fault, Line, Mode, Observation, Octets, Offer, Response, Role,
+    Seen, Service, SmiService, Source, Stimulus, connect_within,
 };
 use rstest::rstest;
 use std::io::{Read, Write};
@@ -284,6 +284,20 @@ fn write() -> Stimulus {
 #[case::write_unanswered(write(), vec![], "no answer, stimulus 0 (write)")]
 #[case::write_read(write(), vec![seen(0, 0, Seen::Value(vec![]))], "an answer that was not asked for, stimulus 0 (write)")]
 #[case::answer_unasked(Stimulus::Advance { ns: 1 }, vec![seen(0, 0, Seen::Refused { error: 1 })], "an answer that was not asked for, stimulus 0 (advance)")]
+#[case::smi_unanswered(smi(SmiService::PdIn), vec![], "no answer, stimulus 0 (smi)")]
+#[case::smi_twice(smi(SmiService::PdIn), vec![result(0), result(0)], "a second answer, stimulus 0 (smi)")]
+#[case::smi_unsupported_and_answered(smi(SmiService::PdIn), vec![seen(0, 0, Seen::Unsupported), result(0)], "a second answer, stimulus 0 (smi)")]
+#[case::smi_unsupported_twice(smi(SmiService::PdIn), vec![seen(0, 0, Seen::Unsupported); 2], "a second answer, stimulus 0 (smi)")]
+#[case::smi_read(smi(SmiService::PdIn), vec![seen(0, 0, Seen::Value(vec![]))], "an answer that was not asked for, stimulus 0 (smi)")]
+#[case::smi_imaged(smi(SmiService::PdIn), vec![image(0, 1)], "an image that was not asked for, stimulus 0 (smi)")]
+#[case::smi_answered_late(smi(SmiService::PdIn), vec![result(1)], "no answer, stimulus 0 (smi)")]
+#[case::result_unasked(Stimulus::Plug { port: 1, device: None }, vec![result(0)], "an answer that was not asked for, stimulus 0 (plug)")]
+#[case::result_of_a_read(read(), vec![result(0)], "an answer that was not asked for, stimulus 0 (read)")]
+#[case::respond_written(Stimulus::Respond { port: 1, response: Response::Written }, vec![seen(0, 0, Seen::Written)], "an answer that was not asked for, stimulus 0 (respond)")]
+#[case::raise_unsupported_twice(Stimulus::Raise { port: 1, code: 0, qualifier: 0 }, vec![seen(0, 0, Seen::Unsupported); 2], "\"unsupported\" is said twice, stimulus 0 (raise)")]
+#[case::drive_imaged(Stimulus::Drive { port: 1, line: Line::Cq, level: true }, vec![image(0, 1)], "an image that was not asked for, stimulus 0 (drive)")]
+#[case::half_a_pulse(Stimulus::Power(true), vec![seen(0, 0, Seen::Line { port: 1, line: Line::WakeUp, level: false })], "a wake-up pulse of level 0, stimulus 0 (power)")]
+#[case::mode_after_image(exchange(&[1]), vec![image(0, 1), seen(0, 0, Seen::Mode { port: 1, mode: Mode::Inactive })], "an observation comes after the image, stimulus 0 (exchange)")]
 #[case::said_twice(Stimulus::Other { kind: 200, octets: vec![] }, vec![seen(0, 0, Seen::Unsupported); 2], "\"unsupported\" is said twice, stimulus 0 (unknown kind)")]
 #[case::out_of_range(Stimulus::Power(true), vec![seen(2, 0, Seen::Unsupported)], "an observation of stimulus 2 in a request of 2")]
 #[case::backwards(Stimulus::Power(true), vec![image(1, 1), seen(0, 0, Seen::Unsupported)], "an observation of stimulus 0 comes after one, stimulus 1 (exchange)")]
@@ -296,12 +310,47 @@ fn it_breaks_the_contract(#[case] stimulus: Stimulus, #[case] answer: Vec<Observ
     assert_eq!(outcome, Err(contract(what)));
 }
 
+fn result(stimulus: u16) -> Observation {
+    seen(stimulus, 0, Seen::Smi(Box::new(status(2, 0x0102))))
+}
+
+#[test]
+fn an_fs_master_may_say_what_happens_on_its_ports_during_any_stimulus() {
+    let happens = [
+        Seen::Line { port: 1, line: Line::Power, level: false },
+        Seen::Line { port: 1, line: Line::WakeUp, level: true },
+        Seen::Mode { port: 1, mode: Mode::Startup },
+        Seen::Request { port: 1, index: 0x4202, subindex: 0, data: None },
+        Seen::Indication { port: 1, source: Source::Port, qualifier: 0x74, code: 0x2002 },
+    ];
+    let during = |stimulus: u16| happens.clone().map(|seen_| seen(stimulus, 0, seen_)).to_vec();
+    let respond = Stimulus::Respond { port: 1, response: Response::Refused(0x8022) };
+    let stimuli = [respond, smi(SmiService::PdIn), read(), exchange(&[1])];
+    let answers = [
+        during(0),
+        during(1),
+        vec![result(1)],
+        during(1),
+        vec![seen(2, 0, Seen::Unsupported)],
+        during(2),
+        during(3),
+        vec![image(3, 1)],
+    ]
+    .concat();
+    let expected = answers.clone();
+    let (outcome, observed) = applied(&stimuli, move |peer, sequence| peer.observed(sequence, &answers));
+    assert_eq!((outcome, observed), (Ok(()), expected));
+}
+
 #[test]
 fn what_is_missing_at_the_end_is_missed() {
     let (outcome, observed) =
         applied(&[exchange(&[1]), exchange(&[2])], |peer, sequence| peer.observed(sequence, &[image(0, 1)]));
     assert_eq!(outcome, Err(contract("no image, stimulus 1 (exchange)")));
     assert_eq!(observed, [image(0, 1)]);
+    let stimuli = [exchange(&[1]), smi(SmiService::PdIn)];
+    let (outcome, _) = applied(&stimuli, |peer, sequence| peer.observed(sequence, &[image(0, 1)]));
+    assert_eq!(outcome, Err(contract("no answer, stimulus 1 (smi)")));
 }
 
 #[test]

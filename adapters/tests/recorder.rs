@@ -5,8 +5,8 @@ mod common;
 
 use common::*;
 use fsct_adapters::{
-    Answer, Description, Dut, DutError, Entry, Happened, Keep, Observation, Octets, Recorder, Recording, Service,
-    Stimulus,
+    Answer, Description, Dut, DutError, Entry, Happened, Keep, Line, Mode, Observation, Octets, Recorder, Recording,
+    Response, Seen, Service, SmiService, Source, Stimulus,
 };
 
 fn recorded(keep: Keep, batches: &[&[Stimulus]]) -> Recording {
@@ -62,6 +62,55 @@ fn each_kind_has_its_entry() {
         entry(7, 1, Happened::Unserved(other)),
     ];
     assert_eq!(recorded(Keep::default(), &[&batch]).head, expected);
+}
+
+#[test]
+fn each_kind_of_an_fs_master_has_its_entry() {
+    let plug = Stimulus::Plug { port: 2, device: Some(identity()) };
+    let [high, low] = [true, false].map(|level| Stimulus::Drive { port: 2, line: Line::Cq, level });
+    let respond = Stimulus::Respond { port: 2, response: Response::Written };
+    let raise = Stimulus::Raise { port: 2, code: 0xB002, qualifier: 0x74 };
+    let authenticity = Stimulus::Set { port: 0, service: Service::FscpAuthenticity, value: Octets::zero(8) };
+    let batch =
+        [plug.clone(), high.clone(), advance(700), low.clone(), respond.clone(), raise.clone(), authenticity.clone()];
+    let saw = |at, seen| entry(at, 1, Happened::Saw(seen));
+    let done = |at, stimulus| entry(at, 1, Happened::Done(stimulus));
+    let expected = [
+        done(0, plug),
+        saw(0, Seen::Line { port: 2, line: Line::Power, level: true }),
+        done(0, high),
+        done(700, low),
+        saw(700, Seen::Line { port: 2, line: Line::WakeUp, level: true }),
+        saw(700, Seen::Mode { port: 2, mode: Mode::Preoperate }),
+        saw(700, Seen::Request { port: 2, index: 0x4202, subindex: 0, data: Some(vec![0; 23]) }),
+        done(700, respond),
+        saw(700, Seen::Mode { port: 2, mode: Mode::Operate }),
+        done(700, raise),
+        saw(700, Seen::Indication { port: 2, source: Source::Device, qualifier: 0x74, code: 0xB002 }),
+        entry(700, 1, Happened::Unserved(authenticity)),
+    ];
+    assert_eq!(recorded(Keep::default(), &[&batch]).head, expected);
+}
+
+#[test]
+fn a_request_through_the_smi_is_one_entry_with_its_result() {
+    let (served, unserved) = (smi(SmiService::PortStatus), smi(SmiService::PdOutIq));
+    let told = |stimulus: &Stimulus, result| match stimulus {
+        Stimulus::Smi(request) => Happened::Smi { request: request.clone(), result },
+        _ => unreachable!("it is a request"),
+    };
+    let expected = [
+        entry(3, 1, told(&served, Some(Box::new(status(2, 0x0102))))),
+        entry(3, 1, told(&served, Some(Box::new(status(2, 0x0102))))),
+        entry(3, 1, told(&unserved, None)),
+    ];
+    assert_eq!(recorded(Keep::default(), &[&[advance(3), served.clone(), served, unserved]]).head, expected);
+}
+
+#[test]
+fn what_is_done_to_a_port_in_vain_is_unserved() {
+    let vain = Stimulus::Drive { port: 1, line: Line::Power, level: true };
+    assert_eq!(recorded(Keep::default(), &[std::slice::from_ref(&vain)]).head, [entry(0, 1, Happened::Unserved(vain))]);
 }
 
 #[test]

@@ -7,7 +7,8 @@ use common::*;
 use fsct_adapters::frame::{Decoder, Frame, encode};
 use fsct_adapters::message::*;
 use fsct_adapters::{
-    Address, Dut, DutError, Listener, MAX_BATCH, MAX_CONNECTIONS, Observation, Stimulus, connect, serve_stream,
+    Address, Dut, DutError, Line, Listener, MAX_BATCH, MAX_CONNECTIONS, Observation, Response, SmiService, Stimulus,
+    connect, serve_stream,
 };
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -44,6 +45,14 @@ fn one_of_each() -> Vec<Stimulus> {
         Stimulus::Read { index: 0x11, subindex: 0 },
         Stimulus::Write { index: 0x10, subindex: 1, data: vec![9; 232] },
         Stimulus::Set { port: 1, service: fsct_adapters::Service::PdinD, value: octets(&[1]) },
+        Stimulus::Plug { port: 2, device: Some(identity()) },
+        Stimulus::Drive { port: 2, line: Line::Cq, level: true },
+        Stimulus::Drive { port: 2, line: Line::Cq, level: false },
+        Stimulus::Respond { port: 2, response: Response::Written },
+        Stimulus::Raise { port: 2, code: 0xB002, qualifier: 0x74 },
+        smi(SmiService::PortStatus),
+        smi(SmiService::PdOutIq),
+        Stimulus::Plug { port: 2, device: None },
         Stimulus::Other { kind: 200, octets: vec![1; 255] },
     ]
 }

@@ -16,6 +16,10 @@ const LINE: u8 = 10;
 const SMI: u8 = 11;
 const INDICATION: u8 = 12;
 
+/// Who an Event is from, in [`INDICATION`].
+const DEVICE: u8 = 1;
+const PORT: u8 = 2;
+
 /// Bit 0 of the flags: more frames answer the same request.
 const MORE: u8 = 1;
 
@@ -83,7 +87,7 @@ fn put_seen(out: &mut Vec<u8>, seen: &Seen) {
             put(out, SMI, &[&[*port, u8::from(*positive)], numbers.as_flattened(), octets]);
         }
         Seen::Indication { port, source, qualifier, code } => {
-            let source = if *source == Source::Device { 1 } else { 2 };
+            let source = if *source == Source::Device { DEVICE } else { PORT };
             put(out, INDICATION, &[&[*port, source, *qualifier], &code.to_be_bytes()]);
         }
     }
@@ -121,39 +125,50 @@ fn seen(kind: u8, value: &[u8]) -> Result<Seen, Malformed> {
             Ok(Seen::Mode { port: *port, mode: Mode::from_number(*number).ok_or(unknown)? })
         }
         (MODE, _) => Err(length("a mode")),
-        (REQUEST, [port, write @ (0 | 1), high, low, subindex, data @ ..]) if *write == 1 || data.is_empty() => {
-            Ok(Seen::Request {
-                port: *port,
-                index: u16::from_be_bytes([*high, *low]),
-                subindex: *subindex,
-                data: (*write == 1).then(|| data.to_vec()),
-            })
+        (REQUEST, [port, write, high, low, subindex, data @ ..]) => {
+            let write = bit(*write, "the direction of on-request data")?;
+            if !write && !data.is_empty() {
+                return Err(length("a read of on-request data"));
+            }
+            let index = u16::from_be_bytes([*high, *low]);
+            Ok(Seen::Request { port: *port, index, subindex: *subindex, data: write.then(|| data.to_vec()) })
         }
         (REQUEST, _) => Err(length("on-request data")),
-        (LINE, [port, number, level @ (0 | 1)]) => {
+        (LINE, [port, number, level]) => {
             let unknown = Malformed::Number { field: "a line", number: *number };
-            Ok(Seen::Line { port: *port, line: Line::from_number(*number).ok_or(unknown)?, level: *level == 1 })
+            let line = Line::from_number(*number).ok_or(unknown)?;
+            Ok(Seen::Line { port: *port, line, level: bit(*level, "the level of a line")? })
         }
         (LINE, _) => Err(length("a line")),
-        (
-            SMI,
-            [port, positive @ (0 | 1), client_1, client_0, reference_1, reference_0, length_1, length_0, octets @ ..],
-        ) => Ok(Seen::Smi(Box::new(SmiResult {
-            port: *port,
-            client_id: u16::from_be_bytes([*client_1, *client_0]),
-            positive: *positive == 1,
-            reference: u16::from_be_bytes([*reference_1, *reference_0]),
-            length: u16::from_be_bytes([*length_1, *length_0]),
-            octets: octets.to_vec(),
-        }))),
+        (SMI, [port, positive, client_1, client_0, reference_1, reference_0, length_1, length_0, octets @ ..]) => {
+            Ok(Seen::Smi(Box::new(SmiResult {
+                port: *port,
+                client_id: u16::from_be_bytes([*client_1, *client_0]),
+                positive: bit(*positive, "the sign of a result")?,
+                reference: u16::from_be_bytes([*reference_1, *reference_0]),
+                length: u16::from_be_bytes([*length_1, *length_0]),
+                octets: octets.to_vec(),
+            })))
+        }
         (SMI, _) => Err(length("the result of an SMI service")),
-        (INDICATION, [port, source @ (1 | 2), qualifier, high, low]) => Ok(Seen::Indication {
-            port: *port,
-            source: if *source == 1 { Source::Device } else { Source::Port },
-            qualifier: *qualifier,
-            code: u16::from_be_bytes([*high, *low]),
-        }),
+        (INDICATION, [port, number, qualifier, high, low]) => {
+            let source = match *number {
+                DEVICE => Source::Device,
+                PORT => Source::Port,
+                number => return Err(Malformed::Number { field: "the source of an Event", number }),
+            };
+            Ok(Seen::Indication { port: *port, source, qualifier: *qualifier, code: u16::from_be_bytes([*high, *low]) })
+        }
         (INDICATION, _) => Err(length("an Event indicated by an FS-Master")),
         (number, _) => Err(Malformed::Number { field: "the kind of an observation", number }),
+    }
+}
+
+/// An octet that is 0 or 1.
+fn bit(number: u8, field: &'static str) -> Result<bool, Malformed> {
+    match number {
+        0 => Ok(false),
+        1 => Ok(true),
+        number => Err(Malformed::Number { field, number }),
     }
 }

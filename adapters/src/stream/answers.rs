@@ -1,6 +1,6 @@
 //! Whether what a DUT answers keeps to the contract: the right answers, in order, and not too many.
 
-use crate::{Description, DutError, Observation, Role, Seen, Stimulus};
+use crate::{Description, DutError, Line, Observation, Role, Seen, Stimulus};
 
 /// Observations a stimulus can cause at the most, on average.
 pub const FLOOD_PER_STIMULUS: usize = 64;
@@ -56,13 +56,8 @@ impl<'a> Answers<'a> {
             }
             (_, Seen::Image { .. }) => return self.broken("an image that was not asked for"),
             (Some(Stimulus::Read { .. }), Seen::Value(_) | Seen::Refused { .. } | Seen::Unsupported)
-            | (Some(Stimulus::Write { .. }), Seen::Written | Seen::Refused { .. } | Seen::Unsupported) => {
-                if self.answer {
-                    return self.broken("a second answer");
-                }
-                self.answer = true;
-            }
-            (Some(Stimulus::Smi(_)), Seen::Smi(_) | Seen::Unsupported) => {
+            | (Some(Stimulus::Write { .. }), Seen::Written | Seen::Refused { .. } | Seen::Unsupported)
+            | (Some(Stimulus::Smi(_)), Seen::Smi(_) | Seen::Unsupported) => {
                 if self.answer {
                     return self.broken("a second answer");
                 }
@@ -73,6 +68,9 @@ impl<'a> Answers<'a> {
             }
             (_, Seen::Unsupported) if self.unsupported => return self.broken("\"unsupported\" is said twice"),
             (_, Seen::Unsupported) => self.unsupported = true,
+            (_, Seen::Line { line: Line::WakeUp, level: false, .. }) => {
+                return self.broken("a wake-up pulse of level 0");
+            }
             (
                 _,
                 Seen::Service { .. }

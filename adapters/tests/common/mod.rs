@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use fsct_adapters::{
-    Address, Clock, ClockKind, Description, Dut, DutError, Listener, Observation, Octets, Offer, Pco, Role, Seen,
-    Service, Stimulus, Stop, Variant, serve,
+    Address, Clock, ClockKind, Description, Dut, DutError, Identity, Line, Listener, Mode, Observation, Octets, Offer,
+    Pco, Role, Seen, Service, SmiRequest, SmiResult, SmiService, Source, Stimulus, Stop, Variant, serve,
 };
 use fsct_protocol::{Edition, ProtMode};
 use std::net::{TcpListener, TcpStream};
@@ -53,6 +53,35 @@ pub fn seen(stimulus: u16, at: u64, seen: Seen) -> Observation {
     Observation { stimulus, at, seen }
 }
 
+pub fn identity() -> Identity {
+    Identity {
+        revision_id: 0x11,
+        com: 3,
+        min_cycle_time: 10,
+        pd_in: 7,
+        pd_out: 7,
+        vendor_id: 0x1234,
+        device_id: 0x56_789A,
+    }
+}
+
+/// Answered by a [`Mirror`] when it is for SMI_PortStatus.
+pub fn smi(service: SmiService) -> Stimulus {
+    Stimulus::Smi(Box::new(SmiRequest {
+        service,
+        port: 2,
+        client_id: 0x0102,
+        expected: 0x9100,
+        octets: vec![0xFF, 0xF0],
+    }))
+}
+
+/// What a [`Mirror`] says of a port: as long a list of diagnoses as there can be.
+pub fn status(port: u8, client_id: u16) -> SmiResult {
+    let octets = [&[0x91, 0x00][..], &[0xFF; 14 + 3 * 255]].concat();
+    SmiResult { port, client_id, positive: true, reference: 0xFFF0, length: octets.len() as u16, octets }
+}
+
 impl Dut for Mirror {
     fn hello(&mut self) -> Result<Description, DutError> {
         Ok(description())
@@ -82,7 +111,27 @@ impl Dut for Mirror {
                     push(Seen::Written);
                     push(Seen::Event { code: 0x1800, qualifier: 0xF4 });
                 }
-                Stimulus::Set { .. } | Stimulus::Other { .. } => push(Seen::Unsupported),
+                // What only an FS-Master has: enough of one to see each of its observations.
+                Stimulus::Plug { port, device } => {
+                    push(Seen::Line { port: *port, line: Line::Power, level: device.is_some() });
+                }
+                Stimulus::Drive { port, line: Line::Cq, level: false } => {
+                    push(Seen::Line { port: *port, line: Line::WakeUp, level: true });
+                    push(Seen::Mode { port: *port, mode: Mode::Preoperate });
+                    push(Seen::Request { port: *port, index: 0x4202, subindex: 0, data: Some(vec![0; 23]) });
+                }
+                Stimulus::Drive { line: Line::Cq | Line::Iq, .. } => {}
+                Stimulus::Respond { port, .. } => push(Seen::Mode { port: *port, mode: Mode::Operate }),
+                Stimulus::Raise { port, code, qualifier } => {
+                    let (source, qualifier) = (Source::Device, *qualifier);
+                    push(Seen::Indication { port: *port, source, qualifier, code: *code });
+                }
+                Stimulus::Smi(request) if request.service == SmiService::PortStatus => {
+                    push(Seen::Smi(Box::new(status(request.port, request.client_id))));
+                }
+                Stimulus::Set { .. } | Stimulus::Other { .. } | Stimulus::Drive { .. } | Stimulus::Smi(_) => {
+                    push(Seen::Unsupported);
+                }
             }
         }
         Ok(())
