@@ -3,10 +3,12 @@
 
 use fsct_adapters::frame::{Decoder, Frame, MAX_GARBAGE, SYNC, checksum, encode};
 use fsct_adapters::message::*;
+use fsct_adapters::smi::error_info;
 use fsct_adapters::{
-    Clock, ClockKind, Description, FLOOD_PER_STIMULUS, FLOOD_SLACK, Observation, Octets, Offer, Pco, REPLY_TIMEOUT,
-    Role, Seen, Service, Stimulus,
+    Clock, ClockKind, Description, FLOOD_PER_STIMULUS, FLOOD_SLACK, Identity, Line, Mode, Observation, Octets, Offer,
+    Pco, REPLY_TIMEOUT, Response, Role, Seen, Service, SmiRequest, SmiResult, SmiService, Source, Stimulus,
 };
+use fsct_protocol::fsp::{Authenticity, INDEX_VERIFY, Protocol, VerifyRecord};
 use fsct_protocol::{Edition, ProtMode};
 use rstest::rstest;
 use std::collections::BTreeSet;
@@ -75,10 +77,122 @@ fn unsupported() -> Observation {
     Observation { stimulus: 0, at: 1_000_000, seen: Seen::Unsupported }
 }
 
+fn master() -> Description {
+    Description {
+        role: Role::Master,
+        ports: 2,
+        pcos: Pco::ALL.to_vec(),
+        vendor: String::new(),
+        product: String::new(),
+        version: String::new(),
+        ..description()
+    }
+}
+
+fn identity() -> Identity {
+    Identity {
+        revision_id: 0x11,
+        com: 3,
+        min_cycle_time: 10,
+        pd_in: 7,
+        pd_out: 7,
+        vendor_id: 0x1234,
+        device_id: 0x56_789A,
+    }
+}
+
+fn record() -> VerifyRecord {
+    VerifyRecord {
+        authenticity: Authenticity { authenticity_1: 1, authenticity_2: 2, port: 1 },
+        protocol: Protocol { version: 1, mode: 1, watchdog_ms: 100, io_struct_crc: 0x9A28, tech_par_crc: 7 },
+    }
+}
+
+fn smi_request() -> SmiRequest {
+    SmiRequest {
+        service: SmiService::FsMasterAccess,
+        port: 0,
+        client_id: 0x1234,
+        expected: 0x0101,
+        octets: [&[0x01, 0x00][..], &[0; 9]].concat(),
+    }
+}
+
+fn smi_result() -> SmiResult {
+    let octets = vec![0x01, 0x01, 0, 0, 0, 1, 0, 0, 0, 2];
+    SmiResult { port: 0, client_id: 0x1234, positive: true, reference: 0x0100, length: 10, octets }
+}
+
+/// What a dump of stimuli or observations holds.
+enum Held {
+    Stimuli(Vec<Stimulus>),
+    Observations(Vec<Observation>),
+}
+
+/// The dumps about an FS-Master with their sequence numbers, in their order.
+fn held() -> Vec<(&'static str, u8, Held)> {
+    let seen = |stimulus, at, seen| Observation { stimulus, at, seen };
+    let drive = |level| Stimulus::Drive { port: 1, line: Line::Cq, level };
+    let mode = |mode| Seen::Mode { port: 1, mode };
+    let line = |line| Seen::Line { port: 1, line, level: true };
+    let advance = |ns| Stimulus::Advance { ns };
+    let given = octets(&[0, 0, 0, 1, 0, 0, 0, 2]);
+    let set = Stimulus::Set { port: 0, service: Service::FscpAuthenticity, value: given };
+    let result = |result| Held::Observations(vec![seen(1, 0, Seen::Smi(Box::new(result)))]);
+    let refused = SmiResult {
+        positive: false,
+        reference: 0,
+        length: 0,
+        octets: error_info::STATE_CONFLICT.to_be_bytes().to_vec(),
+        ..smi_result()
+    };
+    let verify = Some(record().to_octets().to_vec());
+    let indication = Seen::Indication { port: 1, source: Source::Device, qualifier: 0xF4, code: 0xB002 };
+    vec![
+        ("smi", 5, Held::Stimuli(vec![set, Stimulus::Smi(Box::new(smi_request()))])),
+        ("smi-result", 5, result(smi_result())),
+        ("smi-refused", 5, result(refused)),
+        ("plug", 6, Held::Stimuli(vec![Stimulus::Plug { port: 1, device: Some(identity()) }, advance(5_000_000)])),
+        ("plugged", 6, Held::Observations(vec![seen(0, 0, line(Line::Power))])),
+        ("ready-pulse", 7, Held::Stimuli(vec![drive(true), advance(700_000), drive(false), advance(2_000_000)])),
+        (
+            "started",
+            7,
+            Held::Observations(vec![
+                seen(3, 5_750_000, line(Line::WakeUp)),
+                seen(3, 6_000_000, mode(Mode::Startup)),
+                seen(3, 7_000_000, mode(Mode::Preoperate)),
+                seen(3, 7_000_000, Seen::Request { port: 1, index: INDEX_VERIFY, subindex: 0, data: verify }),
+            ]),
+        ),
+        (
+            "respond",
+            8,
+            Held::Stimuli(vec![
+                Stimulus::Respond { port: 1, response: Response::Written },
+                advance(1_000_000),
+                Stimulus::Raise { port: 1, code: 0xB002, qualifier: 0xF4 },
+            ]),
+        ),
+        (
+            "operating",
+            8,
+            Held::Observations(vec![seen(0, 7_700_000, mode(Mode::Operate)), seen(2, 8_700_000, indication)]),
+        ),
+    ]
+}
+
 /// What the page claims of each dump, in its order.
 fn claims() -> Vec<(&'static str, Frame)> {
     let frame = |kind, sequence, payload| Frame { kind, sequence, payload };
-    vec![
+    let held = held().into_iter().map(|(name, sequence, held)| {
+        let (kind, payload) = match held {
+            Held::Stimuli(stimuli) => (APPLY, apply(&stimuli)),
+            Held::Observations(observations) => (OBSERVED, observed(&observations)),
+        };
+        (name, frame(kind, sequence, payload))
+    });
+    let mut claims = vec![
         ("hello", frame(HELLO, 0, Hello::OURS.pack().to_vec())),
         ("description", frame(DESCRIPTION, 0, pack_description(&description(), Limits::LEAST))),
         ("apply", frame(APPLY, 1, apply(&cycle()))),
@@ -87,7 +201,10 @@ fn claims() -> Vec<(&'static str, Frame)> {
         ("unsupported", frame(OBSERVED, 2, observed(&[unsupported()]))),
         ("error", frame(ERROR, 3, pack_error("unknown message 44"))),
         ("version-2", frame(DESCRIPTION, 0, vec![2])),
-    ]
+        ("master", frame(DESCRIPTION, 4, pack_description(&master(), Limits::LEAST))),
+    ];
+    claims.extend(held);
+    claims
 }
 
 #[test]
@@ -117,6 +234,18 @@ fn the_dumps_decode_to_what_the_page_claims() {
     assert_eq!(unpack("observed"), cycle_seen());
     assert_eq!(unpack("unsupported"), [unsupported()]);
     assert_eq!(unpack_error(&payload("error")), "unknown message 44");
+    assert_eq!(unpack_description(&payload("master")), Ok(Described::As(master(), Limits::LEAST)));
+    for (name, _, held) in held() {
+        match held {
+            Held::Stimuli(stimuli) => assert_eq!(unpack_apply(&payload(name)), Ok(stimuli)),
+            Held::Observations(observations) => assert_eq!(unpack(name), observations),
+        }
+    }
+}
+
+/// The page without its line ends.
+fn flowing() -> String {
+    PAGE.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// The cells of the table that begins with this row.
@@ -130,11 +259,72 @@ fn table(head: &str) -> Vec<Vec<&'static str>> {
 
 #[test]
 fn the_services_are_those_of_the_contract() {
-    let page: Vec<_> =
-        table("| number | service | of | |").iter().map(|row| (row[0], row[1].trim_matches('`'))).collect();
-    let numbers: Vec<_> = Service::ALL.iter().map(|entry| entry.1.to_string()).collect();
-    let code: Vec<_> = numbers.iter().map(String::as_str).zip(Service::ALL.map(|entry| entry.2)).collect();
-    assert_eq!(page, code);
+    assert_eq!(numbered("| number | service | of | |"), entries(Service::ALL));
+}
+
+/// Numbers and names of a table whose rows begin with them.
+fn numbered(head: &str) -> Vec<(String, &'static str)> {
+    table(head).iter().map(|row| (row[0].to_owned(), row[1].trim_matches('`'))).collect()
+}
+
+/// The same of a table of the contract.
+fn entries<T, N: ToString>(all: impl IntoIterator<Item = (T, N, &'static str)>) -> Vec<(String, &'static str)> {
+    all.into_iter().map(|(_, number, name)| (number.to_string(), name)).collect()
+}
+
+#[test]
+fn the_lines_modes_and_smi_services_are_those_of_the_contract() {
+    assert_eq!(numbered("| number | line | pin | changed by |"), entries(Line::ALL));
+    assert_eq!(numbered("| number | mode | meaning |"), entries(Mode::ALL));
+    assert_eq!(numbered("| number | service | |"), entries(SmiService::ALL));
+}
+
+#[test]
+fn the_error_infos_are_those_of_the_contract() {
+    let code = [
+        ((), error_info::OUT_OF_RANGE, "OUT_OF_RANGE"),
+        ((), error_info::STATE_CONFLICT, "STATE_CONFLICT"),
+        ((), error_info::NO_COM, "NO_COM"),
+    ];
+    assert_eq!(numbered("| number | ErrorInfo |"), entries(code));
+}
+
+/// The number of a response is the octet behind number of stimuli, TLV head and port.
+#[test]
+fn the_responses_are_those_of_the_code() {
+    let response = |response| apply(&[Stimulus::Respond { port: 1, response }])[6];
+    let code = [
+        ((), response(Response::Value(vec![])), "value"),
+        ((), response(Response::Written), "written"),
+        ((), response(Response::Refused(0)), "refused"),
+    ];
+    assert_eq!(numbered("| number | response | octets behind the number |"), entries(code));
+}
+
+/// Changing a field of an identity changes the octets that the table gives it, and no others.
+#[test]
+fn the_identity_has_the_octets_of_the_page() {
+    let pack = |identity| apply(&[Stimulus::Plug { port: 1, device: Some(identity) }])[6..].to_vec();
+    let zero = Identity { revision_id: 0, com: 0, min_cycle_time: 0, pd_in: 0, pd_out: 0, vendor_id: 0, device_id: 0 };
+    let fields = [
+        ("RevisionID", Identity { revision_id: 0xFF, ..zero }),
+        ("COM", Identity { com: 0xFF, ..zero }),
+        ("MinCycleTime", Identity { min_cycle_time: 0xFF, ..zero }),
+        ("process data in", Identity { pd_in: 0xFF, ..zero }),
+        ("process data out", Identity { pd_out: 0xFF, ..zero }),
+        ("VendorID", Identity { vendor_id: 0xFFFF, ..zero }),
+        ("DeviceID", Identity { device_id: 0xFF_FFFF, ..zero }),
+    ];
+    let rows = table("| octets | field of the identity | value |");
+    assert_eq!(rows.iter().map(|row| row[1]).collect::<Vec<_>>(), fields.map(|field| field.0));
+    let mut at = 0;
+    for (row, (name, identity)) in rows.iter().zip(fields) {
+        let count: usize = row[0].parse().unwrap();
+        let expected = [vec![0; at], vec![0xFF; count], vec![0; 10 - at - count]].concat();
+        assert_eq!(pack(identity), expected, "{name}");
+        at += count;
+    }
+    assert_eq!(at, 10);
 }
 
 #[test]
@@ -163,6 +353,11 @@ fn the_messages_are_those_of_the_code() {
 #[case("write", Stimulus::Write { index: 0, subindex: 0, data: vec![] })]
 #[case("set", Stimulus::Set { port: 1, service: Service::PdinD, value: Octets::zero(1) })]
 #[case("advance", Stimulus::Advance { ns: 1 })]
+#[case("plug", Stimulus::Plug { port: 1, device: None })]
+#[case("respond", Stimulus::Respond { port: 1, response: Response::Written })]
+#[case("raise", Stimulus::Raise { port: 1, code: 0, qualifier: 0 })]
+#[case("drive", Stimulus::Drive { port: 1, line: Line::Cq, level: true })]
+#[case("smi", Stimulus::Smi(Box::new(smi_request())))]
 fn the_stimuli_have_the_kinds_of_the_page(#[case] name: &str, #[case] stimulus: Stimulus) {
     let rows = table("| kind | stimulus | value |");
     let row = rows.iter().find(|row| row[1] == name).unwrap();
@@ -178,10 +373,39 @@ fn the_stimuli_have_the_kinds_of_the_page(#[case] name: &str, #[case] stimulus: 
 #[case("refused", Seen::Refused { error: 0 })]
 #[case("event", Seen::Event { code: 0, qualifier: 0 })]
 #[case("unsupported", Seen::Unsupported)]
+#[case("mode", Seen::Mode { port: 1, mode: Mode::Inactive })]
+#[case("request", Seen::Request { port: 1, index: 0, subindex: 0, data: None })]
+#[case("line", Seen::Line { port: 1, line: Line::Power, level: true })]
+#[case("smi", Seen::Smi(Box::new(smi_result())))]
+#[case("indication", Seen::Indication { port: 1, source: Source::Port, qualifier: 0, code: 0 })]
 fn the_observations_have_the_kinds_of_the_page(#[case] name: &str, #[case] seen: Seen) {
     let rows = table("| kind | observation | value |");
     let row = rows.iter().find(|row| row[1] == name).unwrap();
     assert_eq!(row[0], observed(&[Observation { stimulus: 0, at: 0, seen }])[11].to_string());
+}
+
+/// What the page says belongs to later versions is unknown to the code, and the kind before it is known.
+#[test]
+fn no_kind_is_left_out() {
+    let kinds = |head| table(head).iter().filter_map(|row| row[0].parse().ok()).max();
+    let last: u8 = kinds("| kind | stimulus | value |").unwrap();
+    let (later, known) = (format!("Kinds 0 and {}..199 belong to later versions", last + 1), 12);
+    assert!(flowing().contains(&later), "{later}");
+    assert_eq!((last, kinds("| kind | observation | value |").unwrap()), (known, known));
+    let unknown = [0, 1, known + 1, 0, 0];
+    assert_eq!(unpack_apply(&unknown), Ok(vec![Stimulus::Other { kind: known + 1, octets: vec![] }]));
+    let unknown = [&[0; 11][..], &[known + 1, 0, 0]].concat();
+    assert!(unpack_observed(&unknown, &mut Vec::new()).is_err());
+}
+
+/// The number of a source is the octet behind the port.
+#[rstest]
+#[case::of_a_device(Source::Device, 1)]
+#[case::of_a_port(Source::Port, 2)]
+fn the_sources_of_an_indication_are_those_of_the_page(#[case] source: Source, #[case] number: u8) {
+    assert!(PAGE.contains("source (1 = Device, 2 = port)"));
+    let seen = Seen::Indication { port: 1, source, qualifier: 0, code: 0 };
+    assert_eq!(observed(&[Observation { stimulus: 0, at: 0, seen }])[15], number);
 }
 
 #[test]
@@ -199,7 +423,7 @@ fn the_tags_of_a_description_are_those_of_the_code() {
 
 #[test]
 fn the_limits_are_those_of_the_code() {
-    let text = PAGE.split_whitespace().collect::<Vec<_>>().join(" ");
+    let text = flowing();
     let [first, second] = SYNC;
     for claim in [
         format!("`{first:02X} {second:02X}`"),
