@@ -1,19 +1,23 @@
-//! Exchanges per second: the bare reference FS-Device, the same with session, recorder and oracle around it, and over
-//! TCP on loopback; the whole device suite; loading and checking all cases.
+//! Exchanges per second: the bare reference DUTs, the same with session, recorder and oracle around them, and over TCP on
+//! loopback; the whole suites; loading and checking all cases.
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use fsct_adapters::{Dut, Listener, Observation, Octets, Stimulus, Variant, connect, serve};
+use fsct_adapters::{
+    Dut, Line, Listener, Observation, Octets, Response, Role, SmiRequest, SmiService, Stimulus, Variant, connect, serve,
+};
 use fsct_harness::campaign::{Bench, Run};
+use fsct_harness::case::model::Configure;
 use fsct_harness::library::Library;
-use fsct_harness::oracle::{DeviceOracle, Setup};
+use fsct_harness::oracle::Setup;
 use fsct_harness::plan::{Selection, plan};
+use fsct_harness::portconfig;
 use fsct_harness::session::{Session, Stop};
 use fsct_protocol::crc::Reading;
 use fsct_protocol::fsp::{Authenticity, Protocol, VerifyRecord};
-use fsct_protocol::spdu::{Control, OutSpdu, Pd, Port, succ};
+use fsct_protocol::spdu::{Control, InSpdu, OutSpdu, Pd, Port, Status, inv3, succ};
 use fsct_protocol::{Edition, ProtMode};
-use fsct_reference::{FsDevice, Options};
+use fsct_reference::{FsDevice, FsMaster, MasterOptions, Options};
 use std::convert::Infallible;
 use std::sync::atomic::AtomicBool;
 
@@ -94,15 +98,17 @@ fn bare_reference_device(bencher: Bencher, mode: ProtMode) {
 }
 
 /// A setup in which everything is judged.
-fn setup(library: &Library, mode: ProtMode) -> Setup {
-    let profile = &library.profiles["reference-device"];
+fn setup(library: &Library, role: Role, mode: ProtMode) -> Setup {
+    let profile = &library.profiles[&format!("reference-{role}")];
     Setup {
+        role,
         edition: Edition::Iec2022,
         mode,
         pd_out: mode.max_pd(),
         pd_in: mode.max_pd(),
         port: Port::ONE,
         reading: Reading::Preset,
+        cycle_ns: CYCLE_NS,
         watchdog_ns: profile.watchdog_ns(),
         tick_ns: 0,
         margin_ns: profile.margin_ns(),
@@ -122,15 +128,15 @@ fn judged(dut: &mut dyn Dut, library: &Library, mode: ProtMode, spdus: &[Octets]
     dut.apply(&[Stimulus::Power(false)], &mut Vec::new()).expect("it answers");
     let records = start(dut, mode);
     let profile = &library.profiles["reference-device"];
-    let oracle = DeviceOracle::new(setup(library, mode));
-    let mut session = Session::new(dut, &description, profile, oracle, &interrupted);
+    let mut session = Session::new(dut, &description, profile, vec![setup(library, Role::Device, mode)], &interrupted);
     let went: Result<(), Stop> = (|| {
         session.power(false)?;
         session.power(true)?;
         for record in records {
             session.acyclic(record)?;
         }
-        session.oracle.parameterized(session.now);
+        let now = session.now;
+        session.link_mut().oracle.parameterized(now);
         if batched {
             session.exchange_until(spdus.len() as u64 * CYCLE_NS, spdus.first().copied())?;
         } else {
@@ -153,6 +159,91 @@ fn with_oracle_and_recorder(bencher: Bencher, mode: ProtMode) {
     });
 }
 
+/// Answers of a running FS-Device: to the first SPDU, then EXCHANGES more with the counter going round.
+fn answers(mode: ProtMode) -> Vec<Octets> {
+    let mut mcount = 0;
+    (0..=EXCHANGES)
+        .map(|at| {
+            let status = Status { dcount_i: inv3(mcount), ..Status::default() };
+            mcount = succ(mcount);
+            let pd = Pd::new(&vec![at as u8 | 1; mode.max_pd()]).expect("it fits");
+            let spdu = InSpdu { pd, port: Port::ONE, status };
+            Octets::new(spdu.wire().emit(mode, Reading::Preset).octets()).expect("it fits")
+        })
+        .collect()
+}
+
+/// What brings port 1 of an FS-Master to OPERATE.
+fn bring_up(library: &Library, mode: ProtMode) -> Vec<Stimulus> {
+    let (setup, profile) = (setup(library, Role::Master, mode), &library.profiles["reference-master"]);
+    let list = portconfig::list(&setup, profile, &Configure::default());
+    let request =
+        SmiRequest { service: SmiService::PortConfiguration, port: 1, client_id: 1, expected: 0xFFF0, octets: list };
+    let drive = |level| Stimulus::Drive { port: 1, line: Line::Cq, level };
+    vec![
+        Stimulus::Plug { port: 1, device: Some(portconfig::identity(&setup, profile, (0, 0))) },
+        Stimulus::Smi(Box::new(request)),
+        drive(true),
+        Stimulus::Advance { ns: 750_000 },
+        drive(false),
+        Stimulus::Advance { ns: CYCLE_NS },
+        Stimulus::Respond { port: 1, response: Response::Written },
+    ]
+}
+
+#[divan::bench(args = MODES)]
+fn bare_reference_master(bencher: Bencher, mode: ProtMode) {
+    let (answers, library) = (answers(mode), Library::embedded().expect("it is sound"));
+    let start = bring_up(&library, mode);
+    bencher
+        .counter(ItemsCount::new(EXCHANGES))
+        .with_inputs(|| {
+            let mut dut = FsMaster::new(MasterOptions::default());
+            dut.apply(&[Stimulus::Configure(variant(mode)), Stimulus::Power(true)], &mut Vec::new())
+                .expect("it answers");
+            dut.apply(&start, &mut Vec::new()).expect("it answers");
+            dut
+        })
+        .bench_values(|mut dut| {
+            let mut observed: Vec<Observation> = Vec::new();
+            for octets in &answers {
+                observed.clear();
+                let exchange = Stimulus::Exchange { port: 1, octets: Some(*octets) };
+                dut.apply(&[Stimulus::Advance { ns: CYCLE_NS }, exchange], &mut observed).expect("it answers");
+            }
+            black_box(observed.len())
+        });
+}
+
+#[divan::bench(args = MODES)]
+fn master_with_oracle_and_recorder(bencher: Bencher, mode: ProtMode) {
+    let (answers, library) = (answers(mode), Library::embedded().expect("it is sound"));
+    let start = bring_up(&library, mode);
+    let profile = &library.profiles["reference-master"];
+    bencher.counter(ItemsCount::new(EXCHANGES)).bench(|| {
+        let mut dut = FsMaster::new(MasterOptions::default());
+        let description = dut.hello().expect("it answers");
+        dut.apply(&[Stimulus::Configure(variant(mode))], &mut Vec::new()).expect("it answers");
+        let interrupted = AtomicBool::new(false);
+        let setups = vec![setup(&library, Role::Master, mode)];
+        let mut session = Session::new(&mut dut, &description, profile, setups, &interrupted);
+        session.link_mut().starts = Some(true);
+        let went: Result<(), Stop> = (|| {
+            session.power(true)?;
+            for stimulus in &start {
+                session.act(stimulus.clone())?;
+            }
+            for octets in &answers {
+                session.exchange(Some(*octets))?;
+            }
+            Ok(())
+        })();
+        went.expect("the reference master conforms");
+        assert!(session.link().app.qualifier == Some(true), "it does not operate");
+        black_box(session.recorded())
+    });
+}
+
 #[divan::bench(args = [false, true], sample_count = 10)]
 fn over_tcp_batched(bencher: Bencher, batched: bool) {
     let mode = ProtMode::Crc32;
@@ -167,12 +258,17 @@ fn over_tcp_batched(bencher: Bencher, batched: bool) {
         .bench_local(|| black_box(judged(dut.as_mut(), &library, mode, &spdus, batched)));
 }
 
-#[divan::bench(sample_count = 10)]
-fn whole_device_suite(bencher: Bencher) {
+#[divan::bench(args = ["device", "master"], sample_count = 10)]
+fn whole_suite(bencher: Bencher, role: &str) {
     let library = Library::embedded().expect("it is sound");
-    let profile = &library.profiles["reference-device"];
+    let profile = &library.profiles[&format!("reference-{role}")];
     let interrupted = AtomicBool::new(false);
-    let connect = || Bench::greet(Box::new(FsDevice::new(Options::default())));
+    let connect = || {
+        Bench::greet(match role {
+            "device" => Box::new(FsDevice::new(Options::default())) as Box<dyn Dut>,
+            _ => Box::new(FsMaster::new(MasterOptions::default())),
+        })
+    };
     let description = connect().expect("it answers").description;
     let plan = plan(&library, &Selection::default(), profile, &description).expect("a plan");
     let run = Run {

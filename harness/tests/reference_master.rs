@@ -1,0 +1,133 @@
+//! The embedded reference FS-Master conforms, at every latency; its mutants and dead masters do not.
+
+mod common;
+
+use common::{library, run_with, story};
+use fsct_adapters::Dut;
+use fsct_harness::library::Library;
+use fsct_harness::plan::Selection;
+use fsct_reference::{ConstantMaster, EchoMaster, FsMaster, MasterMutant, MasterOptions, NullMaster};
+use fsct_reports::record::{CaseRecord, Verdict};
+use rstest::rstest;
+
+fn reference(options: MasterOptions) -> Box<dyn Dut> {
+    Box::new(FsMaster::new(options))
+}
+
+fn judged(library: &Library, profile: &str, options: MasterOptions) -> Vec<CaseRecord> {
+    run_with(library, &Selection::default(), profile, || reference(options))
+}
+
+fn not_passed(cases: Vec<CaseRecord>) -> Vec<CaseRecord> {
+    cases.into_iter().filter(|case| case.verdict != Verdict::Pass).collect()
+}
+
+#[test]
+fn the_reference_master_conforms_and_takes_every_transition_in_both_editions() {
+    let cases = judged(&library(), "reference-master", MasterOptions::default());
+    for edition in ["v1.1", "iec2022"] {
+        let scl = (1..=14).map(|number| format!("T{number}"));
+        for transition in scl.chain((1..=6).map(|number| format!("OSSDe T{number}"))) {
+            let taken =
+                |case: &CaseRecord| case.variant.edition == edition && case.transitions.contains_key(&transition);
+            assert!(cases.iter().any(taken), "{transition} was never taken in {edition}");
+        }
+    }
+    let others = not_passed(cases);
+    assert!(others.is_empty(), "{}", story(&others));
+}
+
+#[rstest]
+#[case("master-late-1", 1)]
+#[case("master-late-3", 3)]
+fn a_new_spdu_may_take_some_exchanges(#[case] profile: &str, #[case] latency: u8) {
+    let others = not_passed(judged(&library(), profile, MasterOptions { latency, ..MasterOptions::default() }));
+    assert!(others.is_empty(), "{}", story(&others));
+}
+
+#[test]
+fn a_master_with_passwords_keeps_who_has_none_out() {
+    let library = library();
+    let profile = &library.profiles["reference-master"];
+    let mut with_passwords = profile.clone();
+    with_passwords.features.push("password".into());
+    let mut library = Library::embedded().expect("it is sound");
+    library.profiles.insert("with-passwords".into(), with_passwords);
+    let options = MasterOptions { password: 0x1122_3344, reset_password: 0x5566_7788, ..MasterOptions::default() };
+    let selection = Selection { filter: vec!["FSM-1134".into()], ..Selection::default() };
+    let cases = run_with(&library, &selection, "with-passwords", || reference(options));
+    assert_eq!(cases.len(), 1);
+    assert_eq!(cases[0].verdict, Verdict::Pass, "{}", story(&cases));
+    // Without a password nothing is kept out, and the case says so.
+    let open = run_with(&library, &selection, "with-passwords", || reference(MasterOptions::default()));
+    assert_eq!(open[0].verdict, Verdict::Fail, "{}", story(&open));
+}
+
+#[rstest]
+#[case(MasterMutant::RestartWithoutAcknowledgment, "11.5.2 Table 38 T13")]
+#[case(MasterMutant::AcknowledgmentAsLevel, "11.5.2 Table 38 T13")]
+#[case(MasterMutant::McountNotReset, "11.5.2 Table 38 T8")]
+#[case(MasterMutant::MTimerRestartedByRepetitions, "11.5.5")]
+#[case(MasterMutant::PlainPortNumAccepted, "11.5.2 Table 38 T7")]
+#[case(MasterMutant::DTimeoutIgnored, "11.5.2 Table 38 T7")]
+#[case(MasterMutant::PdinLiveWhileSdset, "11.3.2 Table 28")]
+#[case(MasterMutant::QualifierReleasedEarly, "11.11.4 Table 42")]
+#[case(MasterMutant::ChFAckReqEarly, "11.11.2, 11.5.2 Table 38 T7")]
+#[case(MasterMutant::Counter7To0, "11.4.6 Table 31, 11.5.2 Table 38")]
+#[case(MasterMutant::RecordAfterOperate, "10.4.3.6")]
+#[case(MasterMutant::WrongArgBlockOffset, "10.4.3.6")]
+fn each_mutant_fails_and_the_clause_is_named(#[case] mutant: MasterMutant, #[case] clause: &str) {
+    let cases =
+        judged(&library(), "reference-master", MasterOptions { mutant: Some(mutant), ..MasterOptions::default() });
+    let failed: Vec<CaseRecord> = cases.into_iter().filter(|case| case.verdict == Verdict::Fail).collect();
+    assert!(!failed.is_empty(), "{mutant} fails no case");
+    let first = failed.first().and_then(|case| case.reasons.first()).expect("with a reason");
+    assert!(first.clause.contains(clause), "{mutant}: {}", story(&failed[..failed.len().min(20)]));
+    if mutant == MasterMutant::WrongArgBlockOffset {
+        assert!(failed.iter().all(|case| case.variant.edition == "iec2022"), "v1.1 is right: {}", story(&failed));
+    }
+}
+
+#[test]
+fn a_failure_of_a_master_tells_what_the_matter_is() {
+    let library = library();
+    let told: Vec<String> = MasterMutant::ALL
+        .into_iter()
+        .map(|mutant| {
+            let options = MasterOptions { mutant: Some(mutant), ..MasterOptions::default() };
+            let cases = judged(&library, "reference-master", options);
+            let failed = cases.iter().find(|case| case.verdict == Verdict::Fail).expect("it fails");
+            let reason = failed.reasons.first().expect("with a reason");
+            format!(
+                "{}\n  {} step {} [{}]\n  clause {}\n  expected {}\n  observed {}",
+                mutant.name(),
+                failed.key,
+                reason.step,
+                reason.kind,
+                reason.clause,
+                reason.expected,
+                reason.observed
+            )
+        })
+        .collect();
+    insta::assert_snapshot!(told.join("\n"));
+}
+
+#[rstest]
+#[case::null(|| Box::<NullMaster>::default() as Box<dyn Dut>)]
+#[case::echo(|| Box::<EchoMaster>::default() as Box<dyn Dut>)]
+#[case::constant(|| Box::<ConstantMaster>::default() as Box<dyn Dut>)]
+fn a_dead_master_passes_no_case(#[case] make: fn() -> Box<dyn Dut>) {
+    let cases = run_with(&library(), &Selection::default(), "reference-master", make);
+    assert!(!cases.is_empty());
+    let passed: Vec<CaseRecord> = cases.into_iter().filter(|case| case.verdict <= Verdict::Remark).collect();
+    assert!(passed.is_empty(), "{}", story(&passed));
+}
+
+#[test]
+fn nothing_of_a_master_is_applicable_to_a_device_and_the_other_way_round() {
+    let library = library();
+    let selection = Selection { suites: vec!["scl-device".into()], ..Selection::default() };
+    let cases = run_with(&library, &selection, "reference-master", || reference(MasterOptions::default()));
+    assert!(cases.is_empty(), "{}", story(&cases));
+}
