@@ -75,9 +75,10 @@ pub struct Ports {
 }
 
 impl Ports {
-    /// Those of a case.
+    /// Those of a case. An FS-Master reports the services of every port at power-on: that alone is no use.
     pub fn of(case: &CaseRecord) -> Ports {
-        let mut ports = case.trace.iter().filter_map(|entry| port(&entry.what)).filter(|port| *port > 0);
+        let used = case.trace.iter().filter(|entry| !matches!(entry.what, What::Service { .. }));
+        let mut ports = used.filter_map(|entry| port(&entry.what)).filter(|port| *port > 0);
         let first = ports.next();
         Ports { several: ports.any(|port| Some(port) != first) }
     }

@@ -251,6 +251,7 @@ fn a_box_stands_at_the_side_that_acted(#[case] role: &str, #[case] dut: bool, #[
 #[case::two_ports(vec![on_port(1, 1, true, "L+ on"), on_port(2, 2, true, "L+ on")], &["port 1 · L+ on", "port 2 · L+ on"], "port 3")]
 #[case::exchange(vec![entry(1, What::Exchange { port: 2, sent: None, got: None }, &[])], &["port 2 · lost", "port 2 · no process data"], "port 1")]
 #[case::service(vec![entry(1, What::Service { port: 2, service: "qualifier".into(), value: "01".into() }, &[])], &["port 2 · qualifier = 01"], "port 1")]
+#[case::a_service_of_a_port_that_is_not_used(vec![entry(1, What::Service { port: 1, service: "SDset_S".into(), value: "01".into() }, &[]), entry(1, What::Service { port: 2, service: "FAULTS_S".into(), value: "00".into() }, &[]), on_port(2, 1, true, "L+ on")], &["SDset_S = 01", "port 2 · FAULTS_S = 00", "L+ on"], "port 1")]
 #[case::the_whole_dut(vec![entry(1, What::Set { port: 0, service: "FSCP_Authenticity".into(), value: "01".into() }, &[]), on_port(2, 1, true, "L+ on")], &["whole DUT · FSCP_Authenticity := 0", "L+ on"], "port 1")]
 fn a_port_is_named_where_it_says_something(#[case] trace: Vec<Entry>, #[case] says: &[&str], #[case] silent: &str) {
     let case = CaseRecord { role: "master".into(), trace, steps: Vec::new(), ..failed(1) };
