@@ -42,6 +42,7 @@ pub fn judge(expectation: &Expectation, before: &Before, session: &Session<'_>, 
         Key::Pdin => pdin(expectation, session)?,
         Key::Pdout => pdout(expectation, session)?,
         Key::Image => image(expectation, before, session),
+        Key::Nsr => nsr(expectation, session),
         Key::PdoutD | Key::SetSdDc | Key::ChFAckReqDc => service(expectation, before, session, tester)?,
         Key::PdinM | Key::SdsetS | Key::ChFAckReqS | Key::FaultsS | Key::Qualifier => {
             gateway(expectation, before, session, tester)?
@@ -86,6 +87,18 @@ fn answer_field(expectation: &Expectation, before: &Before, session: &Session<'_
         _ => number(expectation),
     };
     Some(compare(expected, observed))
+}
+
+/// What follows the SPDU in the image.
+fn nsr(expectation: &Expectation, session: &Session<'_>) -> Judged {
+    let setup = session.setup();
+    let length = setup.mode.spdu_octets(setup.image_pd());
+    let seen = session.link().image.map(|octets| hex(octets.as_slice().get(length..).unwrap_or_default()));
+    let expected = match &expectation.value {
+        Expected::Octets(octets) => hex(octets),
+        _ => String::new(),
+    };
+    compare(expected, seen)
 }
 
 fn spdu_field(expectation: &Expectation, before: &Before, session: &Session<'_>) -> Option<Judged> {

@@ -27,6 +27,8 @@ pub struct Link {
     pub oracle: Oracle,
     /// The image presented last.
     pub image: Option<Octets>,
+    /// What the DUT received last.
+    pub sent: Option<Octets>,
     /// When the image last changed.
     pub changed_at: u64,
     /// Application services as reported last.
@@ -73,6 +75,7 @@ impl Link {
             port,
             oracle: Oracle::new(setup),
             image: None,
+            sent: None,
             changed_at: 0,
             app: App::default(),
             input: Octets::zero(length),
@@ -164,6 +167,7 @@ impl Link {
             self.changed_at = at;
         }
         self.image = image;
+        self.sent = sent.copied().or(self.sent);
         if let Some(keeper) = &mut self.keeper {
             keeper.received(at, self.image.as_ref(), self.oracle.setup());
         }

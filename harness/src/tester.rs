@@ -118,7 +118,9 @@ impl Tester {
         self.count = Some(count);
         self.answered = shown;
         self.pd = pd;
-        self.octets = Octets::new(emitted.octets());
+        let mut image = emitted.octets().to_vec();
+        image.extend(&exchange.nsr);
+        self.octets = Octets::new(&image).or(Octets::new(emitted.octets()));
         (self.octets, notes.join(", "))
     }
 

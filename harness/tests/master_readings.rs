@@ -138,7 +138,7 @@ impl TableMaster {
             return;
         }
         self.foreign |= seven && !takes;
-        let held = way.three_sd && self.sd < 3;
+        let held = way.three_sd && self.sd < 3 && scl.get(Var::ChFAckCe) == 1;
         scl.set_ch_f_ack_c(ack && !held);
         scl.set_set_sd_c(set_sd);
         if way.impatient && self.good >= 10 {
@@ -226,9 +226,13 @@ impl TableMaster {
             }
             Stimulus::Respond { .. } => {
                 push(Seen::Mode { port: 1, mode: Mode::Operate });
-                let mut scl = Master::new();
-                scl.start();
-                (self.operates, self.scl) = (true, Some(scl));
+                self.operates = true;
+                // A Device that comes back finds the SCL where it was.
+                self.scl.get_or_insert_with(|| {
+                    let mut scl = Master::new();
+                    scl.start();
+                    scl
+                });
                 self.report(push);
             }
             Stimulus::Exchange { octets, .. } => {
@@ -243,6 +247,10 @@ impl TableMaster {
             Stimulus::Advance { ns } => {
                 self.now += ns;
                 self.expire();
+            }
+            Stimulus::Plug { device: None, .. } if self.operates => {
+                self.operates = false;
+                push(Seen::Mode { port: 1, mode: Mode::Inactive });
             }
             Stimulus::Set { .. } | Stimulus::Plug { .. } | Stimulus::Drive { .. } | Stimulus::Raise { .. } => {}
             _ => push(Seen::Unsupported),

@@ -227,6 +227,8 @@ pub struct Exchange {
     pub until: Vec<Expectation>,
     /// The most SCL cycles for `until`.
     pub within: u32,
+    /// Octets without safety relevance behind the SPDU.
+    pub nsr: Vec<u8>,
     /// Exactly this many link exchanges with the same octets, whatever the DUT answers.
     pub repeat: Option<u32>,
 }
@@ -439,6 +441,8 @@ pub enum Key {
     Pdout,
     /// The image as a whole.
     Image,
+    /// What follows the SPDU in it.
+    Nsr,
     /// Service PDout_D.
     PdoutD,
     /// Service setSD_DC.
@@ -485,7 +489,7 @@ const BOTH: &[Role] = &[Role::Device, Role::Master];
 
 impl Key {
     /// All keys as written in cases, and the side they are for; fields of ArgBlocks are `block.` and their name.
-    pub const ALL: [(Key, &'static str, &'static [Role]); 28] = [
+    pub const ALL: [(Key, &'static str, &'static [Role]); 29] = [
         (Key::DcountI, "DCount_i", DEVICE),
         (Key::SdSet, "SDset", DEVICE),
         (Key::DcommErr, "DCommErr", DEVICE),
@@ -496,6 +500,7 @@ impl Key {
         (Key::ChFAckReq, "ChFAckReq", MASTER),
         (Key::Pdout, "PDout", MASTER),
         (Key::Image, "image", BOTH),
+        (Key::Nsr, "NSR", BOTH),
         (Key::PdoutD, "app.PDout_D", DEVICE),
         (Key::SetSdDc, "app.setSD_DC", DEVICE),
         (Key::ChFAckReqDc, "app.ChFAckReq_DC", DEVICE),
@@ -530,6 +535,7 @@ impl Key {
             self,
             Key::Reply
                 | Key::Event
+                | Key::Nsr
                 | Key::Mode
                 | Key::PortPower
                 | Key::WakeUp
@@ -551,6 +557,7 @@ impl Key {
             Key::Mcount | Key::SetSd | Key::ChFAckReq => "11.4.6 Table 31, 11.5.2 Table 38",
             Key::Pdout => "11.3.2 Table 28",
             Key::Image => "11.5",
+            Key::Nsr => "10.5, 9.1.2",
             Key::PdoutD | Key::SetSdDc | Key::ChFAckReqDc => "11.3.3 Table 29",
             Key::PdinM | Key::SdsetS | Key::ChFAckReqS | Key::FaultsS => "11.3.2 Table 28",
             Key::Qualifier => "11.11.4 Table 42",
@@ -591,6 +598,8 @@ pub enum Expected {
     Mode(Mode),
     /// What was configured.
     Configured,
+    /// What stands in the images of both directions.
+    Snapshot,
     /// The length of what came.
     Right,
     /// Nothing.

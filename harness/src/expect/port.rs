@@ -73,6 +73,7 @@ pub fn of_result(expectation: &Expectation, session: &Session<'_>) -> Judged {
         (Key::Block, Expected::Octets(octets)) => {
             (hex(octets), hex(&result.octets), octets.as_slice() == result.octets.as_slice())
         }
+        (Key::Block, Expected::Snapshot) => snapshot(session, result),
         (Key::Block, Expected::None) => {
             let void = result.octets.is_empty() || result.octets == [0xFF, 0xF0];
             ("no content".to_owned(), hex(&result.octets), void)
@@ -97,6 +98,19 @@ pub fn of_result(expectation: &Expectation, session: &Session<'_>) -> Judged {
         }
         _ => (wanted(expectation), "nothing of the kind".to_owned(), false),
     }
+}
+
+/// FSPDInOut of what stands in the images of both directions (Table 25); PQI and OE are for the base standard to judge.
+fn snapshot(session: &Session<'_>, result: &SmiResult) -> Judged {
+    let octets = |octets: &Option<fsct_adapters::Octets>| octets.map_or_else(Vec::new, |octets| octets.as_slice().to_vec());
+    let (input, output) = (octets(&session.link().sent), octets(&session.link().image));
+    let mut expected = vec![0x11, 0x03];
+    expected.extend(result.octets.get(2..4).unwrap_or(&[0, 0]));
+    expected.push(input.len() as u8);
+    expected.extend(&input);
+    expected.push(output.len() as u8);
+    expected.extend(&output);
+    (hex(&expected), hex(&result.octets), expected == result.octets)
 }
 
 fn wanted(expectation: &Expectation) -> String {

@@ -131,7 +131,12 @@ fn values(key: Key) -> (Words, Option<u32>, bool) {
         Key::Event => (&[(Expected::None, "none")], Some(0xFFFF), false),
         Key::Length => (&[(Expected::Right, "right")], Some(0xFFFF), false),
         Key::Reference => (&[], Some(0xFFFF), false),
-        Key::Block => (&[(Expected::Configured, "configured"), (Expected::None, "none")], None, true),
+        Key::Nsr => (&[], None, true),
+        Key::Block => (
+            &[(Expected::Configured, "configured"), (Expected::Snapshot, "snapshot"), (Expected::None, "none")],
+            None,
+            true,
+        ),
         Key::Field(_) => (&[(Expected::Configured, "configured")], Some(u32::MAX), false),
         Key::Result => (&[], None, false),
     }

@@ -88,6 +88,7 @@ impl Decoder<'_> {
         let corrupt = fields.texts("corrupt");
         let image = fields.optional("image");
         let times = fields.optional_number("times", 1..=10_000_000);
+        let nsr = fields.optional("NSR");
         let repeat = fields.optional_number("repeat", 1..=1_000_000).map(|count| count as u32);
         let until = fields.get("until");
         let within = fields.optional("within");
@@ -112,6 +113,7 @@ impl Decoder<'_> {
             times: times.unwrap_or(1) as u32,
             until,
             within: within.unwrap_or(1),
+            nsr: nsr.and_then(|(text, at)| self.octets(&text, &at)).unwrap_or_default(),
             repeat,
         }
     }
