@@ -43,6 +43,10 @@ pub struct Profile {
     pub authenticity_2: u32,
     /// FSP_TechParCRC; 0 means commissioning.
     pub tech_par_crc: u32,
+    /// FSMasterPassword of an FS-Master; 0 for none.
+    pub password: u32,
+    /// FSResetMasterPW of an FS-Master; 0 for none.
+    pub reset_password: u32,
     /// VendorID of the virtual FS-Device on a port of an FS-Master.
     pub vendor_id: u16,
     /// DeviceID of the virtual FS-Device, three octets.
@@ -92,6 +96,8 @@ impl Profile {
         let authenticity_1 = number("FSP_Authenticity_1", 0..=0xFFFF_FFFF, 0x1122_3344) as u32;
         let authenticity_2 = number("FSP_Authenticity_2", 0..=0xFFFF_FFFF, 0) as u32;
         let tech_par_crc = number("FSP_TechParCRC", 0..=0xFFFF_FFFF, 0) as u32;
+        let password = number("FSMasterPassword", 0..=0xFFFF_FFFF, 0) as u32;
+        let reset_password = number("FSResetMasterPW", 0..=0xFFFF_FFFF, 0) as u32;
         let vendor_id = number("VendorID", 1..=0xFFFF, 0x04D2) as u16;
         let device_id = number("DeviceID", 1..=0xFF_FFFF, 0x00_1234) as u32;
         let watchdog_margin = number("watchdog_margin", 0..=1_000, 2);
@@ -133,6 +139,8 @@ impl Profile {
                 authenticity_1,
                 authenticity_2,
                 tech_par_crc,
+                password,
+                reset_password,
                 vendor_id,
                 device_id,
                 watchdog_margin,

@@ -51,16 +51,17 @@ fn a_master_with_passwords_keeps_who_has_none_out() {
     let profile = &library.profiles["reference-master"];
     let mut with_passwords = profile.clone();
     with_passwords.features.push("password".into());
+    (with_passwords.password, with_passwords.reset_password) = (0x1122_3344, 0x5566_7788);
     let mut library = Library::embedded().expect("it is sound");
     library.profiles.insert("with-passwords".into(), with_passwords);
     let options = MasterOptions { password: 0x1122_3344, reset_password: 0x5566_7788, ..MasterOptions::default() };
-    let selection = Selection { filter: vec!["FSM-1134".into()], ..Selection::default() };
+    let selection = Selection { filter: vec!["assword".into()], ..Selection::default() };
     let cases = run_with(&library, &selection, "with-passwords", || reference(options));
-    assert_eq!(cases.len(), 1);
-    assert_eq!(cases[0].verdict, Verdict::Pass, "{}", story(&cases));
+    assert_eq!(cases.len(), 2);
+    assert!(cases.iter().all(|case| case.verdict == Verdict::Pass), "{}", story(&cases));
     // Without a password nothing is kept out, and the case says so.
     let open = run_with(&library, &selection, "with-passwords", || reference(MasterOptions::default()));
-    assert_eq!(open[0].verdict, Verdict::Fail, "{}", story(&open));
+    assert!(open.iter().all(|case| case.verdict == Verdict::Fail), "{}", story(&open));
 }
 
 #[rstest]

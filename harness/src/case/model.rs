@@ -93,6 +93,8 @@ pub enum Value {
     Number(u32),
     /// The right one with its least significant bit inverted.
     Wrong,
+    /// What the profile says: passwords.
+    Profile,
 }
 
 /// How a virtual FS-Device starts on a port.

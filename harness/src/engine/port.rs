@@ -79,10 +79,16 @@ impl Engine<'_, '_> {
         for (name, value) in &smi.set {
             let fields = if smi.service == SmiService::FsMasterAccess { Some(&FS_MASTER_ACCESS) } else { block };
             let Some(field) = fields.and_then(|block| block.field(name)) else { continue };
-            let right = field.value(edition, &octets).unwrap_or(0);
+            let profile = self.session.profile;
+            let right = match *name == *"FSMasterPassword" {
+                true => profile.password,
+                false if *name == *"FSResetMasterPW" => profile.reset_password,
+                false => field.value(edition, &octets).unwrap_or(0),
+            };
             let value = match value {
                 Value::Number(number) => *number,
                 Value::Wrong => right ^ 1,
+                Value::Profile => right,
             };
             let end = field.offset(edition).map_or(0, |offset| offset + usize::from(field.octets));
             if octets.len() < end {

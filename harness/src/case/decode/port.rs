@@ -60,9 +60,14 @@ impl Decoder<'_> {
     }
 
     fn value(&mut self, text: &str, at: &std::ops::Range<usize>) -> Option<Value> {
-        let value = if text == "wrong" { Some(Value::Wrong) } else { number(text).map(Value::Number) };
+        let value = match text {
+            "wrong" => Some(Value::Wrong),
+            "profile" => Some(Value::Profile),
+            _ => number(text).map(Value::Number),
+        };
         if value.is_none() {
-            self.problem(at, format!("`{text}` is no value of a field: a number such as 49 or 0x1234, or wrong"));
+            let known = "a number such as 49 or 0x1234, wrong, or profile";
+            self.problem(at, format!("`{text}` is no value of a field: {known}"));
         }
         value
     }
