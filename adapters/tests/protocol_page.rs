@@ -8,7 +8,8 @@ use fsct_adapters::{
     Clock, ClockKind, Description, FLOOD_PER_STIMULUS, FLOOD_SLACK, Identity, Line, Mode, Observation, Octets, Offer,
     Pco, REPLY_TIMEOUT, Response, Role, Seen, Service, SmiRequest, SmiResult, SmiService, Source, Stimulus,
 };
-use fsct_protocol::fsp::{Authenticity, INDEX_VERIFY, Protocol, VerifyRecord};
+use fsct_protocol::fsp::{Authenticity, INDEX_VERIFY, IoStructure, IoTotals, Protocol, VerifyRecord};
+use fsct_protocol::smi::{FS_PORT_CONFIG_LIST, SAFETYCOM};
 use fsct_protocol::{Edition, ProtMode};
 use rstest::rstest;
 use std::collections::BTreeSet;
@@ -101,11 +102,53 @@ fn identity() -> Identity {
     }
 }
 
+fn io_structure() -> IoStructure {
+    let side = IoTotals { range: 7, bits: 24, octets: 3, int16: 0, int32: 0 };
+    IoStructure { version: 1, input: side, output: side }
+}
+
 fn record() -> VerifyRecord {
+    let io_struct_crc = io_structure().signature();
     VerifyRecord {
         authenticity: Authenticity { authenticity_1: 1, authenticity_2: 2, port: 1 },
-        protocol: Protocol { version: 1, mode: 1, watchdog_ms: 100, io_struct_crc: 0x9A28, tech_par_crc: 7 },
+        protocol: Protocol { version: 1, mode: 1, watchdog_ms: 100, io_struct_crc, tech_par_crc: 7 },
     }
+}
+
+/// The FSPortConfigList that makes an FS-Master send [`record`] to the Device of [`identity`].
+fn port_config() -> Vec<u8> {
+    let edition = Edition::Iec2022;
+    let (record, io, device) = (record(), io_structure(), identity());
+    let mut list = vec![0; FS_PORT_CONFIG_LIST.length(edition)];
+    for (name, value) in [
+        ("ArgBlockID", FS_PORT_CONFIG_LIST.id(edition).unwrap().into()),
+        ("PortMode", SAFETYCOM.into()),
+        ("Validation&Backup", 2),
+        ("VendorID", device.vendor_id.into()),
+        ("DeviceID", device.device_id),
+        ("FSP_TimeToReady", 50),
+        ("FSP_MinShutDownTime", 100),
+        ("FSP_Authenticity1", record.authenticity.authenticity_1),
+        ("FSP_Authenticity2", record.authenticity.authenticity_2),
+        ("FSP_Port", record.authenticity.port.into()),
+        ("FSP_AuthentCRC", record.authenticity.signature().into()),
+        ("FSP_ProtVersion", record.protocol.version.into()),
+        ("FSP_ProtMode", record.protocol.mode.into()),
+        ("FSP_Watchdog", record.protocol.watchdog_ms.into()),
+        ("FSP_IO_StructCRC", record.protocol.io_struct_crc.into()),
+        ("FSP_TechParCRC", record.protocol.tech_par_crc),
+        ("FSP_ProtParCRC", record.protocol.signature().into()),
+        ("IO_DescVersion", io.version.into()),
+        ("SPDUInLength", io.input.range.into()),
+        ("TotalOfInBits", io.input.bits.into()),
+        ("TotalOfInOctets", io.input.octets.into()),
+        ("SPDUOutLength", io.output.range.into()),
+        ("TotalOfOutBits", io.output.bits.into()),
+        ("TotalOfOutOctets", io.output.octets.into()),
+    ] {
+        FS_PORT_CONFIG_LIST.field(name).unwrap().put(edition, &mut list, value);
+    }
+    list
 }
 
 fn smi_request() -> SmiRequest {
@@ -146,18 +189,39 @@ fn held() -> Vec<(&'static str, u8, Held)> {
         octets: error_info::STATE_CONFLICT.to_be_bytes().to_vec(),
         ..smi_result()
     };
+    let configure = SmiRequest {
+        service: SmiService::PortConfiguration,
+        port: 1,
+        client_id: 0x1235,
+        expected: 0xFFF0,
+        octets: port_config(),
+    };
+    let configured = SmiResult {
+        port: 1,
+        client_id: 0x1235,
+        positive: true,
+        reference: 0x8100,
+        length: 2,
+        octets: vec![0xFF, 0xF0],
+    };
     let verify = Some(record().to_octets().to_vec());
     let indication = Seen::Indication { port: 1, source: Source::Device, qualifier: 0xF4, code: 0xB002 };
     vec![
         ("smi", 5, Held::Stimuli(vec![set, Stimulus::Smi(Box::new(smi_request()))])),
         ("smi-result", 5, result(smi_result())),
         ("smi-refused", 5, result(refused)),
-        ("plug", 6, Held::Stimuli(vec![Stimulus::Plug { port: 1, device: Some(identity()) }, advance(5_000_000)])),
-        ("plugged", 6, Held::Observations(vec![seen(0, 0, line(Line::Power))])),
-        ("ready-pulse", 7, Held::Stimuli(vec![drive(true), advance(700_000), drive(false), advance(2_000_000)])),
+        ("configure-port", 6, Held::Stimuli(vec![Stimulus::Smi(Box::new(configure))])),
+        (
+            "port-configured",
+            6,
+            Held::Observations(vec![seen(0, 0, line(Line::Power)), seen(0, 0, Seen::Smi(Box::new(configured)))]),
+        ),
+        ("plug", 7, Held::Stimuli(vec![Stimulus::Plug { port: 1, device: Some(identity()) }, advance(5_000_000)])),
+        ("plugged", 7, Held::Observations(vec![])),
+        ("ready-pulse", 8, Held::Stimuli(vec![drive(true), advance(700_000), drive(false), advance(2_000_000)])),
         (
             "started",
-            7,
+            8,
             Held::Observations(vec![
                 seen(3, 5_750_000, line(Line::WakeUp)),
                 seen(3, 6_000_000, mode(Mode::Startup)),
@@ -167,7 +231,7 @@ fn held() -> Vec<(&'static str, u8, Held)> {
         ),
         (
             "respond",
-            8,
+            9,
             Held::Stimuli(vec![
                 Stimulus::Respond { port: 1, response: Response::Written },
                 advance(1_000_000),
@@ -176,7 +240,7 @@ fn held() -> Vec<(&'static str, u8, Held)> {
         ),
         (
             "operating",
-            8,
+            9,
             Held::Observations(vec![seen(0, 7_700_000, mode(Mode::Operate)), seen(2, 8_700_000, indication)]),
         ),
     ]
