@@ -96,7 +96,7 @@ pub struct Requirement {
     pub doubt: Option<String>,
     /// How the editions differ.
     pub differs: Option<String>,
-    /// Why it is untestable.
+    /// Why it is untestable, or why nothing is done about it yet.
     pub why: Option<String>,
     /// File and line.
     pub place: String,

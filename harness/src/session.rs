@@ -1,5 +1,6 @@
 //! One case's hold on the DUT: stimuli go out, observations come in, the oracle sees every exchange.
 
+use crate::campaign::MADE_UP;
 use crate::link::Link;
 use crate::oracle::{Mask, Mismatch, Setup};
 use crate::profile::Profile;
@@ -207,12 +208,9 @@ impl<'d> Session<'d> {
             }
             self.keep(&mut stimuli);
             if stimuli.is_empty() {
-                // A real clock without anything to say to the DUT: what it has done meanwhile comes with the next stimulus.
-                stimuli.push(Stimulus::Drive {
-                    port: self.link().port,
-                    line: fsct_adapters::Line::Cq,
-                    level: self.link().levels.0,
-                });
+                // On a real clock time passes by itself; what the DUT has done meanwhile comes with the next stimulus, and one
+                // that does not exist does nothing else.
+                stimuli.push(Stimulus::Other { kind: MADE_UP, octets: Vec::new() });
             }
             self.apply(&stimuli)?;
         }

@@ -274,12 +274,14 @@ fn a_peer_that_misbehaves_ends_soon_and_passes_nothing(#[case] url: String, #[ca
     assert!(summary["execution"]["aborted"].as_u64() > Some(0), "the rest is not tried: {summary}");
 }
 
-#[test]
-fn another_process_gets_the_same_verdicts() {
-    let (own, other) = (Folder::new("own-process"), Folder::new("other-process"));
-    assert_eq!(fsct(&["run", "--out", &own.out()]).code, 0);
+#[rstest]
+#[case("device")]
+#[case("master")]
+fn another_process_gets_the_same_verdicts(#[case] role: &str) {
+    let (own, other) = (Folder::new(&format!("own-{role}")), Folder::new(&format!("other-{role}")));
+    assert_eq!(fsct(&["run", "--dut", &format!("inproc:reference-{role}"), "--out", &own.out()]).code, 0);
     let binary = assert_cmd::cargo::cargo_bin("fsct");
-    let url = format!("exec:{} simulate device --listen stdio", binary.display());
+    let url = format!("exec:{} simulate {role} --listen stdio", binary.display());
     assert_eq!(fsct(&["run", "--dut", &url, "--out", &other.out()]).code, 0);
     let verdicts = |folder: &Folder| -> Vec<String> {
         let text = folder.text("run.jsonl");
@@ -290,4 +292,26 @@ fn another_process_gets_the_same_verdicts() {
     };
     assert_eq!(verdicts(&own), verdicts(&other));
     assert!(verdicts(&own).len() > 1_000);
+}
+
+#[test]
+fn without_a_dut_both_references_are_judged() {
+    let folder = Folder::new("both");
+    let run = fsct(&["run", "--filter", "T25", "--filter", "covers:T25", "--out", &folder.out()]);
+    assert_eq!(run.code, 0, "{run:?}");
+    let summary: serde_json::Value = serde_json::from_str(&folder.text("summary.json")).expect("JSON");
+    let roles: Vec<&str> =
+        summary["dut"].as_array().expect("a list").iter().filter_map(|dut| dut["role"].as_str()).collect();
+    assert_eq!(roles, ["device", "master"]);
+}
+
+#[test]
+fn suites_for_the_other_role_are_not_applicable_with_the_reason() {
+    let folder = Folder::new("other-role");
+    let run = fsct(&["run", "scl-device", "--dut", "inproc:reference-master", "--out", &folder.out()]);
+    assert_eq!(run.code, 4, "{run:?}");
+    assert!(run.out.contains("the case is for a device, the DUT is a master"), "{run:?}");
+    let summary: serde_json::Value = serde_json::from_str(&folder.text("summary.json")).expect("JSON");
+    assert_eq!((&summary["cases"], &summary["verdicts"]["pass"]), (&0.into(), &0.into()));
+    assert!(summary["not_applicable"].as_u64() > Some(1_000));
 }

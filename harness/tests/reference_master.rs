@@ -4,6 +4,7 @@ mod common;
 
 use common::{library, run_with, story};
 use fsct_adapters::Dut;
+use fsct_harness::ledger::Class;
 use fsct_harness::library::Library;
 use fsct_harness::plan::Selection;
 use fsct_reference::{ConstantMaster, EchoMaster, FsMaster, MasterMutant, MasterOptions, NullMaster};
@@ -131,4 +132,19 @@ fn nothing_of_a_master_is_applicable_to_a_device_and_the_other_way_round() {
     let selection = Selection { suites: vec!["scl-device".into()], ..Selection::default() };
     let cases = run_with(&library, &selection, "reference-master", || reference(MasterOptions::default()));
     assert!(cases.is_empty(), "{}", story(&cases));
+}
+
+#[test]
+fn every_record_of_the_scl_and_of_the_fs_master_is_tested_or_says_why_not() {
+    let library = library();
+    let silent: Vec<&str> = library
+        .ledger
+        .iter()
+        .filter(|record| {
+            record.place.contains("requirements/scl.yaml") || record.place.contains("requirements/master.yaml")
+        })
+        .filter(|record| record.class == Class::Open && record.why.as_deref().unwrap_or_default().is_empty())
+        .map(|record| record.id.as_str())
+        .collect();
+    assert!(silent.is_empty(), "{silent:?}");
 }

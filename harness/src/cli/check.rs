@@ -3,6 +3,7 @@
 use super::{Cases, print, show};
 use crate::ledger::Class;
 use crate::library::EVERYTHING;
+use fsct_adapters::Role;
 use std::path::PathBuf;
 
 /// Arguments of `fsct check`.
@@ -49,10 +50,16 @@ pub fn run(args: &Args) -> u8 {
         })
         .collect();
     print(format!("{records} requirements: {}", classes.join(", ")));
-    let one_sided = library.ledger.iter().filter(|record| record.dut == "both" && record.class == Class::Tested);
+    let judged = |id: &str, role| {
+        library.cases().any(|case| case.role == role && case.requirements.iter().any(|requirement| requirement == id))
+    };
+    let both = || library.ledger.iter().filter(|record| record.dut == "both" && record.class == Class::Tested);
+    let only = |role, other| both().filter(|record| judged(&record.id, role) && !judged(&record.id, other)).count();
     print(format!(
-        "{} of those tested concern both roles and are judged on the FS-Device only so far",
-        one_sided.count()
+        "{} of those tested concern both roles; {} are judged on an FS-Device alone, {} on an FS-Master alone",
+        both().count(),
+        only(Role::Device, Role::Master),
+        only(Role::Master, Role::Device)
     ));
     0
 }

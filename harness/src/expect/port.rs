@@ -102,7 +102,8 @@ pub fn of_result(expectation: &Expectation, session: &Session<'_>) -> Judged {
 
 /// FSPDInOut of what stands in the images of both directions (Table 25); PQI and OE are for the base standard to judge.
 fn snapshot(session: &Session<'_>, result: &SmiResult) -> Judged {
-    let octets = |octets: &Option<fsct_adapters::Octets>| octets.map_or_else(Vec::new, |octets| octets.as_slice().to_vec());
+    let octets =
+        |octets: &Option<fsct_adapters::Octets>| octets.map_or_else(Vec::new, |octets| octets.as_slice().to_vec());
     let (input, output) = (octets(&session.link().sent), octets(&session.link().image));
     let mut expected = vec![0x11, 0x03];
     expected.extend(result.octets.get(2..4).unwrap_or(&[0, 0]));

@@ -27,6 +27,9 @@ struct Input {
 
 impl Input {
     fn drive(&mut self, now: u64, level: bool) {
+        if level == self.raw {
+            return;
+        }
         self.raw = level;
         self.due = (level != self.filtered).then_some(now + FILTER_NS);
     }

@@ -87,6 +87,8 @@ pub struct PortUnit {
     l_plus: bool,
     power_off_by_service: bool,
     device: Option<Identity>,
+    /// On-request data for the Device are not answered yet.
+    asked: bool,
     mode: Mode,
     scl: Option<Scl>,
     ossde: Option<Ossde>,
@@ -116,6 +118,7 @@ impl PortUnit {
             l_plus: false,
             power_off_by_service: false,
             device: None,
+            asked: false,
             mode: Mode::Inactive,
             scl: None,
             ossde: None,
@@ -201,6 +204,7 @@ impl PortUnit {
 
     fn set_mode(&mut self, mode: Mode, seen: &mut Sink<'_>) {
         if self.mode != mode {
+            self.asked &= mode != Mode::Inactive;
             self.mode = mode;
             seen.push(Seen::Mode { port: self.number, mode });
         }
@@ -288,6 +292,10 @@ impl PortUnit {
 
     /// The Device has answered what was sent last.
     pub fn respond(&mut self, now: u64, _response: &Response, fscp: Option<[u8; 8]>, seen: &mut Sink<'_>) {
+        if !std::mem::take(&mut self.asked) {
+            return seen.push(Seen::Unsupported);
+        }
+        // Table 12 does not say what a refusal leads to: the record has been sent.
         if matches!(self.phase, Phase::Record { .. }) {
             self.operate(now, fscp, seen);
         }
@@ -369,6 +377,7 @@ impl PortUnit {
     }
 
     fn send_record(&mut self, record: Vec<u8>, seen: &mut Sink<'_>) {
+        self.asked = true;
         seen.push(Seen::Request { port: self.number, index: INDEX_VERIFY, subindex: 0, data: Some(record) });
     }
 
@@ -574,6 +583,11 @@ impl PortUnit {
         }
     }
 
+    /// Whether on-request data for the Device are not answered yet.
+    pub const fn is_asked(&self) -> bool {
+        self.asked
+    }
+
     /// Mode of the Device on the port.
     pub const fn mode(&self) -> Mode {
         self.mode
@@ -595,7 +609,8 @@ impl PortUnit {
     }
 
     /// On-request data for the Device on behalf of an SMI client.
-    pub fn ask(&self, index: u16, subindex: u8, data: Option<Vec<u8>>, seen: &mut Sink<'_>) {
+    pub fn ask(&mut self, index: u16, subindex: u8, data: Option<Vec<u8>>, seen: &mut Sink<'_>) {
+        self.asked = true;
         seen.push(Seen::Request { port: self.number, index, subindex, data });
     }
 }

@@ -149,8 +149,7 @@ impl FsMaster {
             SmiService::FsMasterAccess => return self.access(octets, seen),
             _ => {}
         }
-        let (now, fscp) = (self.now, self.fscp);
-        let _ = fscp;
+        let now = self.now;
         let index = usize::from(request.port) - 1;
         let mutant = self.options.mutant;
         let Some(port) = self.ports.get_mut(index) else { return Err(Refusal::PortNumInvalid) };
@@ -186,6 +185,9 @@ impl FsMaster {
             SmiService::DeviceWrite | SmiService::DeviceRead => {
                 if !matches!(port.mode(), Mode::Preoperate | Mode::Operate) {
                     return Err(Refusal::DeviceNotAccessible);
+                }
+                if port.is_asked() {
+                    return Err(Refusal::ServiceTempUnavailable);
                 }
                 let [_, _, high, low, subindex, data @ ..] = octets.as_slice() else {
                     return Err(Refusal::ArgBlockLengthInvalid);
