@@ -166,12 +166,12 @@ fn options_of_the_address() {
 }
 
 #[rstest]
-#[case(&[("mutants", "x")], r#"the reference device has no option "mutants", did you mean "mutant"?"#)]
-#[case(&[("mutant", "wrongseed")], r#"the reference device has no mutant "wrongseed", did you mean "wrong-seed"?"#)]
-#[case(&[("clock", "reel")], r#"the reference device has no clock "reel", did you mean "real"?"#)]
-#[case(&[("latency", "9")], r#"the latency of the reference device is a number of exchanges from 0 to 8, not "9""#)]
-#[case(&[("latency", "-1\n")], r#"the latency of the reference device is a number of exchanges from 0 to 8, not "-1\n""#)]
-#[case(&[("latency", "1"), ("latency", "1")], r#"the option "latency" of the reference device is given twice"#)]
+#[case(&[("mutants", "x")], r#"the reference DUT has no option "mutants", did you mean "mutant"?"#)]
+#[case(&[("mutant", "wrongseed")], r#"the reference DUT has no mutant "wrongseed", did you mean "wrong-seed"?"#)]
+#[case(&[("clock", "reel")], r#"the reference DUT has no clock "reel", did you mean "real"?"#)]
+#[case(&[("latency", "9")], r#"the latency of the reference DUT is a number of exchanges from 0 to 8, not "9""#)]
+#[case(&[("latency", "-1\n")], r#"the latency of the reference DUT is a number of exchanges from 0 to 8, not "-1\n""#)]
+#[case(&[("latency", "1"), ("latency", "1")], r#"the option "latency" of the reference DUT is given twice"#)]
 fn options_that_cannot_be_understood(#[case] pairs: &[(&str, &str)], #[case] text: &str) {
     assert_eq!(query(pairs).unwrap_err().to_string(), text);
 }
