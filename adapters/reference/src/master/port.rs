@@ -396,7 +396,10 @@ impl PortUnit {
         let nsr = config.nsr.unwrap_or(of_device);
         let start = config.is_safety() && self.scl.is_none();
         let verified = start.then(|| verify::verify(self.edition, self.number, config, fscp));
-        self.clear_buffers(nsr);
+        // The SPDU of an SCL that goes on stands all the while.
+        if self.scl.is_none() {
+            self.clear_buffers(nsr);
+        }
         match verified {
             Some(Ok(verified)) => {
                 self.scl = Some(Scl::start(verified.config(self.mutant)));

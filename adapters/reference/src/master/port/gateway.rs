@@ -69,11 +69,12 @@ impl PortUnit {
             return None;
         }
         let (spdu_in, _) = self.config.as_ref()?.spdu();
-        // A message of another length is none.
-        let expected = usize::from(spdu_in) + self.nsr_in.len();
-        if let Some(octets) = received.map(Octets::as_slice).filter(|octets| octets.len() == expected) {
+        // Less than the SPDU, or more than the process data, is no message. Non-safety octets that are missing stay as they were.
+        let lengths = usize::from(spdu_in)..=usize::from(spdu_in) + self.nsr_in.len();
+        if let Some(octets) = received.map(Octets::as_slice).filter(|octets| lengths.contains(&octets.len())) {
             let (safety, other) = octets.split_at_checked(spdu_in.into())?;
-            (self.fs_in, self.nsr_in) = (safety.to_vec(), other.to_vec());
+            self.fs_in = safety.to_vec();
+            self.nsr_in.iter_mut().zip(other).for_each(|(octet, new)| *octet = *new);
             if let Some(scl) = &mut self.scl {
                 scl.received(now, safety, &self.inputs);
                 self.show_scl(seen);
