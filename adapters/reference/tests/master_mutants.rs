@@ -160,7 +160,7 @@ fn record_after_operate() {
     let (right, wrong) = seen(MasterMutant::RecordAfterOperate, |options| {
         let mut bench = Bench::factory_with(plain(), options);
         bench.configure(&list(plain()));
-        bench.to_record();
+        bench.start_up_to_record();
         bench.seen()
     });
     let start = [wake_up(), mode(Mode::Startup), mode(Mode::Preoperate)];
@@ -175,7 +175,7 @@ fn wrong_arg_block_offset() {
         let (right, wrong) = seen(MasterMutant::WrongArgBlockOffset, |options| {
             let mut bench = Bench::factory_with(of(edition), options);
             bench.configure(&list(of(edition)));
-            bench.to_record();
+            bench.start_up_to_record();
             let data = bench.seen().into_iter().find_map(|seen| match seen {
                 Seen::Request { data, .. } => data,
                 _ => None,
@@ -200,7 +200,7 @@ fn most_mutants_start_up_like_the_original() {
         let (right, wrong) = seen(which, |options| {
             let mut bench = Bench::factory_with(plain(), options);
             bench.configure(&list(plain()));
-            bench.to_record();
+            bench.start_up_to_record();
             let mut all = bench.seen();
             bench.respond(fsct_adapters::Response::Written);
             all.extend(bench.seen());

@@ -77,7 +77,9 @@ fn t1_good_after_the_first_check(
 #[case(Edition::Iec2022, &[LOCKED])]
 fn t2_a_fault_at_the_first_check_needs_an_acknowledgment(#[case] edition: Edition, #[case] events: &[u16]) {
     let mut bench = checking(edition, true, false);
-    bench.advance(5 * MS);
+    bench.advance(5 * MS - 1);
+    assert_eq!(bench.last, []);
+    bench.advance(1);
     assert_eq!(bench.events(), events);
     expect(&bench, 0, false, false);
     bench.drive(Line::Iq, true);
@@ -239,11 +241,20 @@ fn the_raw_bits_are_in_the_fs_in_buffer(
     }
 }
 
+/// Raw is what the line is at this moment, before its filter.
+#[test]
+fn a_test_pulse_is_seen_in_the_raw_bits() {
+    let mut bench = good();
+    bench.drive(Line::Iq, false);
+    assert_eq!(bench.read(SmiService::FsPdInOut).octets[5], 1);
+    expect(&bench, 0x03, true, false);
+}
+
 #[test]
 fn there_is_no_communication() {
     let mut bench = good();
     bench.plug(Some(list(plain()).identity()));
-    bench.to_record();
+    bench.start_up_to_record();
     assert!(!bench.seen().contains(&wake_up()));
     bench.receive(None);
     assert_eq!(bench.image, None);

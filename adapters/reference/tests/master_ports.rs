@@ -1,16 +1,13 @@
-//! A port of the FS-Master: its start step by step in both editions, what it verifies, how it fails, COMLOST, supply, and what
-//! survives a power cycle.
+//! A port of the FS-Master: its start step by step in both editions, COMLOST, supply, and what survives a power cycle.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod master_common;
 
-use fsct_adapters::{Line, Mode, Octets, Response, Seen, Service, SmiService, Source, Stimulus};
+use fsct_adapters::{Line, Mode, Octets, Response, Seen, Service, SmiService, Stimulus};
 use fsct_protocol::{Edition, ProtMode};
 use fsct_reference::MasterOptions;
 use master_common::*;
 use rstest::rstest;
-
-const ERROR: u8 = 0xFC;
 
 fn is_result(seen: &Seen) -> bool {
     matches!(seen, Seen::Smi(_))
@@ -19,10 +16,6 @@ fn is_result(seen: &Seen) -> bool {
 /// What was seen but for results of services.
 fn happened(bench: &Bench) -> Vec<(u64, Seen)> {
     bench.timed().into_iter().filter(|(_, seen)| !is_result(seen)).collect()
-}
-
-fn port_event(code: u16) -> Seen {
-    Seen::Indication { port: PORT, source: Source::Port, qualifier: ERROR, code }
 }
 
 fn power_mode(bench: &mut Bench, mode: u8, time: u16) -> bool {
@@ -65,7 +58,7 @@ fn a_port_starts_step_by_step(
 fn any_answer_to_the_record_leads_to_operate(#[case] response: Response) {
     let mut bench = Bench::factory(plain());
     bench.configure(&list(plain()));
-    bench.to_record();
+    bench.start_up_to_record();
     bench.respond(response);
     assert_eq!(bench.seen(), [mode(Mode::Operate)]);
     assert_eq!(bench.info(), 8);
@@ -75,7 +68,7 @@ fn any_answer_to_the_record_leads_to_operate(#[case] response: Response) {
 fn no_answer_to_the_record_is_a_port_fault() {
     let mut bench = Bench::factory(plain());
     bench.configure(&list(plain()));
-    bench.to_record();
+    bench.start_up_to_record();
     bench.advance(5 * S - 1);
     bench.advance(1);
     assert_eq!(bench.info(), 2);
@@ -150,7 +143,7 @@ fn a_configuration_anew_cycles_the_supply_and_starts_another_scl(#[case] edition
     assert_eq!(bench.last, []);
     bench.advance(1);
     assert_eq!(bench.timed(), [(now + off, l_plus(true))]);
-    bench.to_operate();
+    bench.start();
     bench.sends(m(0).sd(), SDin);
     bench.row(d(7).sd_set(), m(1), SDin);
 }
@@ -160,7 +153,7 @@ fn without_device_three_wake_ups_then_another_cycle() {
     let mut bench = Bench::factory(plain());
     bench.plug(None);
     bench.configure(&list(plain()));
-    bench.to_record();
+    bench.start_up_to_record();
     let at = 800 * US;
     assert_eq!(bench.timed(), [(at, wake_up())]);
     bench.advance(3 * S);
@@ -179,126 +172,10 @@ fn a_device_plugged_between_two_wake_ups_is_found() {
     let mut bench = Bench::factory(plain());
     bench.plug(None);
     bench.configure(&list(plain()));
-    bench.to_record();
+    bench.start_up_to_record();
     bench.plug(Some(list(plain()).identity()));
     bench.advance(50 * MS);
     assert!(bench.seen().contains(&record(&list(plain()))));
-}
-
-#[rstest]
-#[case::vendor(|list: &mut List| list.vendor_id += 1)]
-#[case::device(|list: &mut List| list.device_id += 1)]
-#[case::cycle_time(|list: &mut List| list.cycle_time = 19)]
-fn another_device_than_configured_stays_in_preoperate(
-    #[values(Edition::V1_1, Edition::Iec2022)] edition: Edition,
-    #[case] change: fn(&mut List),
-) {
-    let mut other = list(of(edition));
-    change(&mut other);
-    let mut bench = Bench::factory(of(edition));
-    bench.configure(&other);
-    bench.to_record();
-    assert_eq!(bench.seen(), [wake_up(), mode(Mode::Startup), mode(Mode::Preoperate), port_event(0x1803)]);
-    assert_eq!((bench.info(), bench.diags()), (2, vec![(ERROR, 0x1803)]));
-    bench.advance(60 * S);
-    assert_eq!(bench.last, []);
-    // The right one instead.
-    bench.plug(None);
-    bench.advance(2 * S);
-    let right = List { cycle_time: 20, ..other };
-    bench.plug(Some(fsct_adapters::Identity { min_cycle_time: 19, ..right.identity() }));
-    bench.to_operate();
-    assert_eq!((bench.info(), bench.diags()), (8, vec![]));
-}
-
-#[test]
-fn validation_0_checks_no_device() {
-    let mut bench = Bench::factory(plain());
-    bench.configure(&List { validation: 0, device_id: 1, ..list(plain()) });
-    bench.to_operate();
-    assert_eq!(bench.info(), 8);
-}
-
-type Change = fn(&mut List);
-
-/// Table B.2: EventCode per edition; 0 where the SCL starts.
-#[rstest]
-#[case::watchdog(|list: &mut List| list.protocol.watchdog_ms = 0, 0xB009, 0x2009)]
-#[case::version(|list: &mut List| list.protocol.version = 2, 0xB006, 0x2006)]
-#[case::mode(|list: &mut List| list.protocol.mode = 3, 0xB006, 0x2006)]
-#[case::spdu_out(|list: &mut List| list.spdu_out = 8, 0xB006, 0x2006)]
-#[case::authenticity(|list: &mut List| list.authenticity.authenticity_2 ^= 1, 0xB003, 0x2003)]
-#[case::authenticity_in_commissioning(
-    |list: &mut List| (list.authenticity.authenticity_1, list.protocol.tech_par_crc) = (0, 0), 0xB003, 0)]
-#[case::port(|list: &mut List| list.authenticity.port = 1, 0xB004, 0)]
-#[case::commissioning(|list: &mut List| list.protocol.tech_par_crc = 0, 0, 0)]
-fn what_the_scl_of_the_master_verifies(
-    #[values(Edition::V1_1, Edition::Iec2022)] edition: Edition,
-    #[case] change: Change,
-    #[case] v1_1: u16,
-    #[case] iec2022: u16,
-) {
-    let mut deviating = list(of(edition));
-    change(&mut deviating);
-    let mut bench = Bench::factory(of(edition));
-    bench.fscp(AUTHENTICITY);
-    bench.configure(&deviating);
-    bench.to_operate();
-    let code = if edition == Edition::V1_1 { v1_1 } else { iec2022 };
-    if code == 0 {
-        assert_eq!((bench.seen(), bench.info()), (vec![mode(Mode::Operate)], 8));
-        return;
-    }
-    assert_eq!(bench.seen(), [mode(Mode::Operate), port_event(code)]);
-    assert_eq!((bench.info(), bench.diags()), (4, vec![(ERROR, code)]));
-    // All octets 0 where the SPDU would be.
-    bench.answer(d(7));
-    assert_eq!(bench.seen().len(), 1);
-    assert_eq!(bench.image, Some(Octets::zero(deviating.spdu_out.into())));
-}
-
-#[rstest]
-#[case::authent_crc(9, 0xB005, 0x2005)]
-#[case::authenticity(0, 0xB005, 0x2005)]
-#[case::prot_par_crc(21, 0xB006, 0x2006)]
-#[case::watchdog(14, 0xB006, 0x2006)]
-fn signatures_of_the_record_are_verified(
-    #[values(Edition::V1_1, Edition::Iec2022)] edition: Edition,
-    #[case] octet: usize,
-    #[case] v1_1: u16,
-    #[case] iec2022: u16,
-) {
-    let (record, code) = if edition == Edition::V1_1 { (14, v1_1) } else { (16, iec2022) };
-    let mut octets = list(of(edition)).octets();
-    octets[record + octet] ^= 0x40;
-    let mut bench = Bench::factory(of(edition));
-    assert!(bench.smi(SmiService::PortConfiguration, PORT, &octets).positive);
-    bench.to_record();
-    let sent = Seen::Request { port: PORT, index: 0x4202, subindex: 0, data: Some(octets[record..][..23].to_vec()) };
-    assert!(bench.seen().contains(&sent));
-    bench.respond(Response::Written);
-    assert_eq!(bench.events(), [code]);
-}
-
-#[test]
-fn without_authenticity_from_above_there_is_nothing_to_compare_with() {
-    let mut bench = Bench::factory(of(Edition::V1_1));
-    bench.configure(&list(of(Edition::V1_1)));
-    bench.to_operate();
-    assert_eq!(bench.info(), 8);
-}
-
-/// iec2022: FSP_Port is what goes out as PortNum.
-#[test]
-fn port_num_is_fsp_port() {
-    let mut other = list(plain());
-    other.authenticity.port = 0xC3;
-    let mut bench = Bench::factory(plain());
-    bench.configure(&other);
-    bench.to_operate();
-    bench.answer(d(7).sd_set().port(!0xC3));
-    assert_eq!(bench.image.unwrap().as_slice()[3], 0xC3);
-    assert!(!bench.bit(Service::FaultsS));
 }
 
 /// The SCL is not started anew: it stays in its fault and asks for an acknowledgment.
@@ -315,7 +192,7 @@ fn comlost_keeps_the_fault(#[values(Edition::V1_1, Edition::Iec2022)] edition: E
     bench.advance(2 * S);
     assert_eq!(bench.seen(), [l_plus(true)]);
     bench.plug(Some(list(of(edition)).identity()));
-    bench.to_record();
+    bench.start_up_to_record();
     assert!(bench.seen().contains(&record(&list(of(edition)))));
     bench.respond(Response::Written);
     assert_eq!(bench.seen(), [mode(Mode::Operate)]);
@@ -332,7 +209,7 @@ fn comlost_with_latency_shows_no_zeros() {
     bench.plug(None);
     bench.advance(2 * S);
     bench.plug(Some(list(plain()).identity()));
-    bench.to_operate();
+    bench.start();
     for _ in 0..3 {
         bench.receive(None);
         assert!(bench.out().is_some());
@@ -350,7 +227,7 @@ fn supply_by_service(#[values(Edition::V1_1, Edition::Iec2022)] edition: Edition
     bench.advance(1500 * MS);
     assert_eq!(bench.timed().last(), Some(&(now + 1500 * MS, l_plus(true))));
     assert!(bench.bit(Service::FaultsS), "MTimer ran on");
-    bench.to_operate();
+    bench.start();
     bench.row(d(7).sd_set(), m(1).sd().ack_req(), SDin);
     // Off for good, on for good.
     assert!(power_mode(&mut bench, 1, 0));
@@ -361,7 +238,7 @@ fn supply_by_service(#[values(Edition::V1_1, Edition::Iec2022)] edition: Edition
     assert_eq!(bench.seen()[..1], [l_plus(true)]);
     assert!(power_mode(&mut bench, 2, 0));
     assert_eq!(happened(&bench), []);
-    bench.to_operate();
+    bench.start();
     assert_eq!(bench.info(), 8);
 }
 
@@ -404,16 +281,6 @@ fn other_port_modes_start_as_the_base_standard_says(
 }
 
 #[rstest]
-#[case::manual(1, true)]
-#[case::autostart(2, false)]
-fn autostart_takes_any_device(#[case] port_mode: u8, #[case] validated: bool) {
-    let mut bench = Bench::factory(plain());
-    bench.configure(&List { port_mode, vendor_id: 9, ..list(plain()) });
-    bench.advance(10 * MS);
-    assert_eq!(bench.events(), if validated { vec![0x1803] } else { vec![] });
-}
-
-#[rstest]
 #[case(0, 1, false)]
 #[case(3, 5, true)]
 #[case(4, 6, true)]
@@ -421,7 +288,7 @@ fn ports_without_communication(#[case] port_mode: u8, #[case] info: u8, #[case] 
     let mut bench = Bench::factory(plain());
     bench.configure(&List { port_mode, ..list(plain()) });
     assert_eq!(bench.seen().contains(&l_plus(true)), on);
-    bench.to_record();
+    bench.start_up_to_record();
     assert_eq!(bench.last, []);
     bench.receive(None);
     assert_eq!(bench.image, None);
@@ -473,13 +340,13 @@ fn what_survives_a_power_cycle(#[case] edition: Edition, #[case] tech_par_crc: u
     stored.protocol.tech_par_crc = tech_par_crc;
     let mut bench = Bench::factory(of(edition));
     bench.configure(&stored);
-    bench.to_operate();
+    bench.start();
     bench.power(false);
     bench.power(true);
     assert_eq!(bench.seen().contains(&l_plus(true)), kept);
     assert_eq!(bench.info(), u8::from(!kept));
     if kept {
-        bench.to_operate();
+        bench.start();
         assert_eq!(bench.info(), 8, "the Device stays plugged");
     }
 }
@@ -537,29 +404,4 @@ fn without_power_there_are_no_ports() {
     assert_eq!(bench.seen(), [Seen::Unsupported, Seen::Image { port: PORT, octets: None }]);
     assert_eq!(bench.request(SmiService::PortStatus, PORT, 0x9100, &[0xFF, 0xF0]), None);
     assert_eq!(bench.seen(), [Seen::Unsupported]);
-}
-
-/// Appearing Errors and Warnings are pending, until they disappear or the Device starts anew.
-#[test]
-fn events_of_the_device() {
-    let mut bench = Bench::operate(plain());
-    let raise = |bench: &mut Bench, code, qualifier| {
-        bench.apply(&[Stimulus::Raise { port: PORT, code, qualifier }]);
-        assert_eq!(bench.seen(), [Seen::Indication { port: PORT, source: Source::Device, qualifier, code }]);
-    };
-    raise(&mut bench, 0xB003, 0xF4);
-    raise(&mut bench, 0xB003, 0xF4);
-    raise(&mut bench, 0x8CA0, 0xE4);
-    raise(&mut bench, 0x8CA1, 0xD4);
-    raise(&mut bench, 0xB000, 0x54);
-    assert_eq!(bench.diags(), [(0xF4, 0xB003), (0xE4, 0x8CA0)]);
-    raise(&mut bench, 0x8CA0, 0xA4);
-    assert_eq!(bench.diags(), [(0xF4, 0xB003)]);
-    bench.plug(None);
-    bench.apply(&[Stimulus::Raise { port: PORT, code: 1, qualifier: 0xF4 }]);
-    assert_eq!(bench.seen(), []);
-    bench.advance(2 * S);
-    bench.plug(Some(list(plain()).identity()));
-    bench.to_operate();
-    assert_eq!(bench.diags(), []);
 }

@@ -40,7 +40,7 @@ fn master_off_and_on(#[values(Edition::V1_1, Edition::Iec2022)] edition: Edition
     chart.answer(d(4).sd_set().timeout());
     assert_eq!(chart.image, None);
     chart.power(true);
-    chart.to_operate();
+    chart.start();
     chart.set(Service::PdoutM, &[PD_OUT; 3]);
     chart.sends(m(0).sd(), SDin);
     chart.row(d(7).sd_set(), m(1), SDin);

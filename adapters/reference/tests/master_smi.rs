@@ -38,7 +38,7 @@ fn mixed(edition: Edition) -> (Bench, List) {
     let mut bench = Bench::factory(of(edition));
     bench.plug(Some(list.identity()));
     bench.configure(&list);
-    bench.to_operate();
+    bench.start();
     (bench, list)
 }
 
@@ -88,7 +88,7 @@ fn a_port_without_configuration_reads_back_zeros(#[values(Edition::V1_1, Edition
 fn the_record_is_a_slice_of_the_configuration(#[case] edition: Edition, #[case] offset: usize) {
     let mut bench = Bench::factory(of(edition));
     bench.configure(&list(of(edition)));
-    bench.to_record();
+    bench.start_up_to_record();
     let slice = list(of(edition)).octets()[offset..offset + 23].to_vec();
     assert!(bench.seen().contains(&Seen::Request { port: PORT, index: 0x4202, subindex: 0, data: Some(slice) }));
 }
@@ -151,7 +151,7 @@ fn fs_pd_in_out_without_scl() {
     deviating.protocol.watchdog_ms = 0;
     let mut bench = Bench::factory(plain());
     bench.configure(&deviating);
-    bench.to_operate();
+    bench.start();
     let expected = [&[0x11, 0x03, 0, 1, 7][..], &[0; 7], &[7], &[0; 7]].concat();
     assert_eq!(bench.read(SmiService::FsPdInOut).octets, expected);
 }
@@ -162,7 +162,7 @@ fn buffers_are_empty_after_a_configuration_anew() {
     let mut bench = Bench::operate(plain());
     bench.configure(&list(plain()));
     bench.advance(2 * S);
-    bench.to_operate();
+    bench.start();
     assert!(bench.read(SmiService::FsPdInOut).octets[5..12].iter().all(|octet| *octet == 0));
 }
 
@@ -175,7 +175,7 @@ fn spdu_in_and_out_of_v1_1() {
     refused(&bench.read(SmiService::SpduIn), edition, 0, error_info::NO_COM, 0);
     let spdu_out = [0x10, 0x05, 1, 2, 3, 4, 5, 6, 7];
     refused(&bench.smi(SmiService::SpduOut, PORT, &spdu_out), edition, 0, error_info::NO_COM, 0);
-    bench.to_operate();
+    bench.start();
     bench.answer(d(7).sd_set());
     let answer = d(7).sd_set().octets(bench.variant);
     positive(&bench.read(SmiService::SpduIn), 0, &[&[0x10, 0x04][..], answer.as_slice()].concat());
@@ -332,7 +332,7 @@ fn device_write_goes_out_at_once(#[values(Edition::V1_1, Edition::Iec2022)] edit
     let result = bench.smi(SmiService::DeviceWrite, PORT, &write);
     refused(&result, edition, 0xFFF0, error_info::NO_COM, job_error::DEVICE_NOT_ACCESSIBLE);
     bench.configure(&list(of(edition)));
-    bench.to_operate();
+    bench.start();
     assert!(bench.smi(SmiService::DeviceWrite, PORT, &write).positive);
     let request = Seen::Request { port: PORT, index: 0x24, subindex: 3, data: Some(vec![0xAB, 0xCD]) };
     assert_eq!(bench.seen()[..1], [request]);
@@ -344,7 +344,7 @@ fn one_request_is_open_at_a_time() {
     let write = [0x30, 0x00, 0x00, 0x24, 0, 1];
     let mut bench = Bench::factory(plain());
     bench.configure(&list(plain()));
-    bench.to_record();
+    bench.start_up_to_record();
     let busy = |bench: &mut Bench| {
         let result = bench.smi(SmiService::DeviceWrite, PORT, &write);
         refused(&result, plain().edition, 0xFFF0, 0, job_error::SERVICE_TEMP_UNAVAILABLE);
@@ -365,7 +365,7 @@ fn one_request_is_open_at_a_time() {
     bench.plug(None);
     bench.advance(2 * S);
     bench.plug(Some(list(plain()).identity()));
-    bench.to_record();
+    bench.start_up_to_record();
     assert!(bench.seen().contains(&record(&list(plain()))));
 }
 
@@ -377,7 +377,7 @@ fn device_read_goes_out_and_has_no_result() {
     let result = bench.smi(SmiService::DeviceRead, PORT, &read);
     refused(&result, plain().edition, 0x3000, 0, job_error::DEVICE_NOT_ACCESSIBLE);
     bench.configure(&list(plain()));
-    bench.to_operate();
+    bench.start();
     assert_eq!(bench.request(SmiService::DeviceRead, PORT, 0x3000, &read), None);
     let request = Seen::Request { port: PORT, index: 0x10, subindex: 0, data: None };
     assert_eq!(bench.seen(), [request, Seen::Unsupported]);
@@ -437,7 +437,7 @@ fn the_reset_password_resets() {
     bench.advance(60 * S);
     assert_eq!(bench.last, []);
     bench.configure(&list(plain()));
-    bench.to_operate();
+    bench.start();
     assert_eq!(bench.info(), 8);
 }
 
