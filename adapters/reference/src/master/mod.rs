@@ -19,7 +19,8 @@ pub use options::MasterOptions;
 
 use crate::device::{DEFAULT_VARIANT, REAL_UNCERTAINTY_NS, Sink, offers};
 use fsct_adapters::{
-    Clock, ClockKind, Description, Dut, DutError, Observation, Octets, Pco, Role, Seen, Service, Stimulus, Variant,
+    Clock, ClockKind, Description, Dut, DutError, Line, Observation, Octets, Pco, Role, Seen, Service, Stimulus,
+    Variant,
 };
 use port::PortUnit;
 use std::time::Instant;
@@ -117,7 +118,7 @@ impl FsMaster {
             Stimulus::Plug { device, .. } => unit.plug(now, *device, seen),
             Stimulus::Respond { response, .. } => unit.respond(response, fscp, seen),
             Stimulus::Raise { code, qualifier, .. } => unit.raise(*code, *qualifier, seen),
-            Stimulus::Drive { line, level, .. } => unit.drive(now, *line, *level),
+            Stimulus::Drive { line: line @ (Line::Cq | Line::Iq), level, .. } => unit.drive(now, *line, *level),
             Stimulus::Set { service, value, .. } if unit.set(*service, value, seen) => {}
             _ => seen.push(Seen::Unsupported),
         }

@@ -219,7 +219,6 @@ impl PortUnit {
     /// SMI_PortPowerOffOn.
     pub fn switch(&mut self, now: u64, on: bool, back_after_ms: Option<u64>, seen: &mut Sink<'_>) {
         if on {
-            self.power_off_by_service = false;
             if !self.l_plus {
                 self.restart(now, seen);
             }
@@ -239,6 +238,7 @@ impl PortUnit {
     /// The supply comes back: the port starts as it is configured, its SCL goes on. One that is deactivated has its supply
     /// because it was asked for, and nothing else.
     fn restart(&mut self, now: u64, seen: &mut Sink<'_>) {
+        self.power_off_by_service = false;
         if self.port_mode() == port_mode::DEACTIVATED {
             self.supply(true, seen);
             self.phase = Phase::Rest;
