@@ -65,8 +65,6 @@ pub struct PortUnit {
     l_plus: bool,
     power_off_by_service: bool,
     device: Option<Identity>,
-    /// On-request data for the Device are not answered yet.
-    asked: bool,
     mode: Mode,
     scl: Option<Scl>,
     ossde: Option<Ossde>,
@@ -98,7 +96,6 @@ impl PortUnit {
             l_plus: false,
             power_off_by_service: false,
             device: None,
-            asked: false,
             mode: Mode::Inactive,
             scl: None,
             ossde: None,
@@ -203,7 +200,6 @@ impl PortUnit {
             self.asked = None;
         }
         if self.mode != mode {
-            self.asked &= mode != Mode::Inactive;
             self.mode = mode;
             seen.push(Seen::Mode { port: self.number, mode });
         }
