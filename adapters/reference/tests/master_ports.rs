@@ -405,3 +405,23 @@ fn without_power_there_are_no_ports() {
     assert_eq!(bench.request(SmiService::PortStatus, PORT, 0x9100, &[0xFF, 0xF0]), None);
     assert_eq!(bench.seen(), [Seen::Unsupported]);
 }
+
+/// Off for good, then off for a time: behind it the port is on, and says so.
+#[test]
+fn off_once_ends_off_for_good() {
+    let mut bench = Bench::waiting_first(of(Edition::Iec2022));
+    assert!(power_mode(&mut bench, 1, 0));
+    assert_eq!(bench.info(), 254);
+    assert!(power_mode(&mut bench, 0, 1_000));
+    bench.advance(1_000 * MS);
+    assert!(bench.seen().contains(&l_plus(true)));
+    assert_eq!(bench.info(), 0, "no Device yet");
+}
+
+/// L+ and the wake-up are the FS-Master's own: nothing drives them from outside.
+#[rstest]
+fn only_the_data_lines_can_be_driven(#[values(Line::Power, Line::WakeUp)] line: Line) {
+    let mut bench = Bench::waiting_first(plain());
+    bench.drive(line, true);
+    assert_eq!(bench.seen(), [Seen::Unsupported]);
+}
