@@ -1,8 +1,8 @@
 //! The ArgBlocks of the SMI, octet by octet per edition (10.3), written by hand in the order of the tables.
 
 use super::MasterMutant;
-use fsct_protocol::Edition;
 use fsct_protocol::fsp::{Authenticity, Protocol};
+use fsct_protocol::{Edition, ProtMode};
 
 /// ArgBlockIDs (v1.1 Table 19, iec2022 Table 18).
 pub mod id {
@@ -69,6 +69,10 @@ pub struct PortConfig {
     pub off_ms: u64,
     /// FSP_VerifyRecord.
     pub record: Vec<u8>,
+    /// FSP_AuthentCRC is the signature of the authenticity.
+    pub authent_crc_right: bool,
+    /// FSP_ProtParCRC is the signature of the protocol parameters.
+    pub prot_par_crc_right: bool,
     /// Its authenticity, whatever its signature says.
     pub authenticity: Authenticity,
     /// Its protocol parameters, whatever their signature says.
@@ -107,6 +111,9 @@ pub const fn config_octets(edition: Edition) -> usize {
 }
 
 impl PortConfig {
+    /// The supply stays off at least so long before a restart, in milliseconds (Annex G).
+    pub const LEAST_OFF_MS: u64 = 1_000;
+
     /// Reads an FSPortConfigList of the right length; `None` when a value lies outside its range.
     pub fn read(edition: Edition, octets: &[u8], mutant: Option<MasterMutant>) -> Option<PortConfig> {
         let mut reader = Reader(octets);
@@ -127,9 +134,11 @@ impl PortConfig {
         };
         let fields = reader.take(23);
         let (authenticity, protocol) = fields.split_at_checked(Authenticity::OCTETS)?;
+        let authent_crc_right = Authenticity::from_octets(authenticity).is_ok();
+        let prot_par_crc_right = Protocol::from_octets(protocol).is_ok();
         let authenticity = Authenticity::fields(authenticity).ok()?;
         let protocol = Protocol::fields(protocol).ok()?;
-        let _io_desc_version = reader.octet();
+        let io_desc_version = reader.octet();
         let spdu_in = reader.octet();
         let _in_totals = reader.take(4);
         let spdu_out = reader.octet();
@@ -142,28 +151,31 @@ impl PortConfig {
             device_id,
             nsr,
             time_to_ready_ms: u64::from(time_to_ready) * 10,
-            off_ms: u64::from(min_shut_down) * 10,
+            off_ms: (u64::from(min_shut_down) * 10).max(PortConfig::LEAST_OFF_MS),
             record,
+            authent_crc_right,
+            prot_par_crc_right,
             authenticity,
             protocol,
             spdu_in,
             spdu_out,
         };
-        let plausible = config.in_range(edition, iq_behavior, (time_to_ready, min_shut_down));
+        let plausible = config.in_range(edition, iq_behavior, io_desc_version, (time_to_ready, min_shut_down));
         plausible.then_some(config)
     }
 
-    fn in_range(&self, edition: Edition, iq_behavior: u8, times: (u32, u32)) -> bool {
+    /// What a PortMode does not care for may have any value. Whether the FSP parameters are right is for the start of the SCL.
+    fn in_range(&self, edition: Edition, iq_behavior: u8, io_desc_version: u8, times: (u32, u32)) -> bool {
         use port_mode::*;
         let known = match self.port_mode {
             DEACTIVATED | IOL_MANUAL | IOL_AUTOSTART | DI_CQ | SAFETYCOM | MIXEDSAFETYCOM | OSSDE => true,
             DO_CQ => edition == Edition::Iec2022,
             _ => false,
         };
-        let iq = match edition {
-            _ if self.port_mode == OSSDE => true,
-            Edition::V1_1 => matches!(iq_behavior, 0 | 5),
-            Edition::Iec2022 => matches!(iq_behavior, 0 | 1 | 5),
+        let iq = match (self.port_mode, edition) {
+            (DEACTIVATED | DI_CQ | DO_CQ, _) | (OSSDE, Edition::Iec2022) => true,
+            (_, Edition::V1_1) => matches!(iq_behavior, 0 | 5),
+            (_, Edition::Iec2022) => matches!(iq_behavior, 0 | 1 | 5),
         };
         let validated = matches!(self.port_mode, IOL_MANUAL | SAFETYCOM | MIXEDSAFETYCOM);
         let ids = !validated || self.vendor_id != 0 && (1..=0x00FF_FFFF).contains(&self.device_id);
@@ -174,13 +186,32 @@ impl PortConfig {
             || edition == Edition::V1_1
             || (1..=0x7FFF).contains(&time_to_ready) && (100..=1000).contains(&min_shut_down);
         let (nsr_in, nsr_out) = self.nsr.unwrap_or((0, 0));
+        let nsr = self.port_mode == DEACTIVATED || nsr_in <= 32 && nsr_out <= 32;
+        let ossde = self.port_mode != OSSDE || self.spdu_in == 1;
+        let described = !safety || io_desc_version == 1;
         let lengths = !safety
             || (4..=31).contains(&self.spdu_in)
                 && (4..=31).contains(&self.spdu_out)
                 && u16::from(self.spdu_in) + u16::from(nsr_in) <= 32
                 && u16::from(self.spdu_out) + u16::from(nsr_out) <= 32;
         let port = !safety || self.authenticity.port != 0;
-        known && iq && ids && backup && waits && lengths && port
+        known && iq && ids && backup && waits && nsr && ossde && described && lengths && port
+    }
+
+    /// SPDUInLength and SPDUOutLength where an SPDU is exchanged; else none.
+    pub const fn spdu(&self) -> (u8, u8) {
+        if self.is_safety() { (self.spdu_in, self.spdu_out) } else { (0, 0) }
+    }
+
+    /// Octets of PDin_M and PDout_M.
+    pub fn pd(&self) -> (u8, u8) {
+        let code = self.protocol.mode;
+        let shortest = ProtMode::from_code(code).map_or(usize::MAX, |mode| mode.spdu_octets(0));
+        let pd = |spdu: u8| usize::from(spdu).saturating_sub(shortest).min(ProtMode::Crc32.max_pd()) as u8;
+        match self.port_mode {
+            port_mode::OSSDE => (1, 0),
+            _ => (pd(self.spdu().0), pd(self.spdu().1)),
+        }
     }
 
     /// SAFETYCOM or MIXEDSAFETYCOM.

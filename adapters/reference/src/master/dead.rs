@@ -104,6 +104,10 @@ impl Shell {
                     self.variant = *variant;
                 }
                 Stimulus::Power(on) => self.power(*on, &mut seen),
+                Stimulus::Exchange { port, .. } if !(1..=PORTS).contains(port) => {
+                    seen.push(Seen::Unsupported);
+                    seen.push(Seen::Image { port: *port, octets: None });
+                }
                 Stimulus::Exchange { port, octets } => {
                     let octets = self.powered.then(|| image(*port, octets.as_ref(), self.variant));
                     seen.push(Seen::Image { port: *port, octets });

@@ -25,6 +25,12 @@ use fsct_adapters::{
 use port::PortUnit;
 use std::time::Instant;
 
+/// The most one [`Stimulus::Advance`] may be. A port without Ready pulse switches its supply again and again, each time two
+/// observations: what a longer one is answered with has no end.
+const MAX_ADVANCE_NS: u64 = 86_400_000_000_000;
+/// Where the clock ends: no time that is due later than now can overflow.
+const LAST_NS: u64 = u64::MAX / 2;
+
 /// The reference FS-Master.
 #[derive(Debug)]
 pub struct FsMaster {
@@ -67,7 +73,9 @@ impl FsMaster {
         match stimulus {
             Stimulus::Configure(variant) => self.configure(*variant, seen),
             Stimulus::Power(on) => self.power(*on, seen),
-            Stimulus::Advance { ns } if self.began.is_none() => self.advance_to(self.now.saturating_add(*ns), seen),
+            Stimulus::Advance { ns } if self.began.is_none() && *ns <= MAX_ADVANCE_NS && self.now + ns <= LAST_NS => {
+                self.advance_to(self.now + ns, seen);
+            }
             Stimulus::Exchange { port, octets } => {
                 let now = self.now;
                 let image = match self.port(*port) {
@@ -108,7 +116,7 @@ impl FsMaster {
         let Some(unit) = self.port(number) else { return seen.push(Seen::Unsupported) };
         match stimulus {
             Stimulus::Plug { device, .. } => unit.plug(now, *device, seen),
-            Stimulus::Respond { response, .. } => unit.respond(now, response, fscp, seen),
+            Stimulus::Respond { response, .. } => unit.respond(response, fscp, seen),
             Stimulus::Raise { code, qualifier, .. } => unit.raise(*code, *qualifier, seen),
             Stimulus::Drive { line: line @ (Line::Cq | Line::Iq), level, .. } => unit.drive(now, *line, *level),
             Stimulus::Set { service, value, .. } if unit.set(*service, value, seen) => {}
@@ -147,6 +155,7 @@ impl FsMaster {
     fn advance_to(&mut self, to: u64, seen: &mut Sink<'_>) {
         let fscp = self.fscp;
         while self.powered {
+            self.ports.iter_mut().for_each(|port| port.skip(to));
             let next = self.ports.iter_mut().filter_map(|port| Some((port.due()?, port)));
             let Some((due, port)) = next.min_by_key(|(due, _)| *due).filter(|(due, _)| *due <= to) else { break };
             seen.at = due.max(self.now);

@@ -65,5 +65,7 @@ fn mutant(value: &str) -> Result<MasterMutant, OptionError> {
 }
 
 fn password(value: &str) -> Result<u32, OptionError> {
-    u32::from_str_radix(value, 16).map_err(|_| OptionError::BadPassword { given: value.to_owned() })
+    let digits = value.len() <= 8 && value.bytes().all(|digit| digit.is_ascii_hexdigit());
+    let number = u32::from_str_radix(value, 16).ok().filter(|_| digits);
+    number.ok_or_else(|| OptionError::BadPassword { given: value.to_owned() })
 }

@@ -93,7 +93,7 @@ impl Ossde {
         self.iq.drive(now, level);
     }
 
-    /// AckQ; `true` when a fault has just been acknowledged.
+    /// AckQ: its rising edge acknowledges a fault that has gone.
     pub fn ack_q(&mut self, value: bool) {
         let rising = value && !self.ack_q;
         self.ack_q = value;
@@ -108,7 +108,7 @@ impl Ossde {
         [self.cq.due, self.iq.due, self.discrepancy_due, self.first_check_due].into_iter().flatten().min()
     }
 
-    /// What is due by now is done; `true` when a fault has just been found in state 1 or 2.
+    /// What is due by now is done; `true` when a fault has just appeared: T2, T3 or T6.
     pub fn pass(&mut self, now: u64) -> bool {
         self.cq.pass(now);
         self.iq.pass(now);
@@ -119,10 +119,12 @@ impl Ossde {
             self.first_check_due = None;
         }
         self.state = match self.state {
-            State::PortOssdeCheck1 if faulty => State::OssdeFaultBad3,
-            State::PortOssdeCheck1 if self.first_check_due.is_none() && self.discrepancy_due.is_none() => {
-                State::OssdeOkGood2
+            // An antivalence that may still end is no result yet.
+            State::PortOssdeCheck1 if self.first_check_due.is_some() || self.discrepancy_due.is_some() => {
+                State::PortOssdeCheck1
             }
+            State::PortOssdeCheck1 if faulty => State::OssdeFaultBad3,
+            State::PortOssdeCheck1 => State::OssdeOkGood2,
             State::OssdeOkGood2 | State::NoFaultAwaitAckQ4 if faulty => State::OssdeFaultBad3,
             State::OssdeFaultBad3 if !faulty => State::NoFaultAwaitAckQ4,
             state => state,
@@ -146,9 +148,9 @@ impl Ossde {
         }
     }
 
-    /// Octet 0 of FSInBuffer: bit 0 is C/Q, bit 1 is I/Q (10.5).
+    /// Octet 0 of FSInBuffer: bit 0 is C/Q, bit 1 is I/Q, as they are (10.5).
     pub fn image(&self) -> u8 {
-        u8::from(self.cq.filtered) | u8::from(self.iq.filtered) << 1
+        u8::from(self.cq.raw) | u8::from(self.iq.raw) << 1
     }
 
     /// What the services show.

@@ -1,16 +1,18 @@
 //! One port of the reference FS-Master: its supply, the DL-mode handler with the Ready pulse (7.2), the Configuration Manager
-//! with the verify record (clause 8), its SCL or OSSDe block, and the services at the gateway.
+//! with the verify record (clause 8). What it shows at the gateway is in `gateway`, what it verifies in `verify`.
+
+mod gateway;
+mod verify;
 
 use super::MasterMutant;
-use super::blocks::{PortConfig, PortStatus, port_mode};
+use super::blocks::{PortConfig, port_mode};
 use super::ossde::Ossde;
-use super::scl::{Config, Inputs, Outputs, Scl};
+use super::scl::{Inputs, Outputs, Scl};
 use crate::device::{Pipeline, Sink};
-use fsct_adapters::{Identity, Line, Mode, Octets, Response, Seen, Service, Source};
-use fsct_protocol::crc::crc16;
+use fsct_adapters::{Identity, Line, Mode, Octets, Response, Seen, Source};
+use fsct_protocol::Edition;
 use fsct_protocol::fsp::INDEX_VERIFY;
-use fsct_protocol::spdu::{Pd, Port};
-use fsct_protocol::{Edition, ProtMode};
+use fsct_protocol::spdu::Pd;
 
 const MS: u64 = 1_000_000;
 /// Width of a Ready pulse (Table 7).
@@ -20,38 +22,14 @@ const WAKE_UP_NS: u64 = 100_000;
 /// Between two wake-ups without an answer (base standard).
 const WAKE_UP_RETRY_NS: u64 = 50 * MS;
 const WAKE_UPS: u8 = 3;
-/// How long the answer to the verify record is waited for.
-const RECORD_NS: u64 = 5_000 * MS;
+/// How long the answer to on-request data is waited for.
+const REQUEST_NS: u64 = 5_000 * MS;
 /// EventQualifiers of the base standard: an Error of the port that appears.
 const PORT_ERROR_APPEARS: u8 = 0xFC;
-/// EventQualifier bits: mode appears, and types Warning and Error.
-const APPEARS: u8 = 0xC0;
+/// EventCode of iec2022 Table B.2: OSSD locked.
+const OSSD_LOCKED: u16 = 0x20F0;
 /// EventCode of the base standard: another Device than configured.
 const INCORRECT_DEVICE: u16 = 0x1803;
-
-/// PortStatusInfo (10.3.5).
-pub mod info {
-    /// NO_DEVICE.
-    pub const NO_DEVICE: u8 = 0;
-    /// DEACTIVATED.
-    pub const DEACTIVATED: u8 = 1;
-    /// INCORRECT_DEVICE (v1.1), PORT_DIAG (iec2022).
-    pub const PORT_DIAG: u8 = 2;
-    /// PREOPERATE (v1.1).
-    pub const PREOPERATE: u8 = 3;
-    /// OPERATE.
-    pub const OPERATE: u8 = 4;
-    /// DI_C/Q.
-    pub const DI_CQ: u8 = 5;
-    /// DO_C/Q.
-    pub const DO_CQ: u8 = 6;
-    /// OSSDE.
-    pub const OSSDE: u8 = 7;
-    /// SPDU_EXCHANGE (v1.1), SCL_ENABLED (iec2022).
-    pub const SCL_ENABLED: u8 = 8;
-    /// PORT_POWER_OFF (iec2022).
-    pub const PORT_POWER_OFF: u8 = 254;
-}
 
 /// How far the start of the port is.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -87,20 +65,20 @@ pub struct PortUnit {
     l_plus: bool,
     power_off_by_service: bool,
     device: Option<Identity>,
-    /// On-request data for the Device are not answered yet.
-    asked: bool,
     mode: Mode,
     scl: Option<Scl>,
     ossde: Option<Ossde>,
     levels: (bool, bool),
     inputs: Inputs,
     outputs: Outputs,
+    /// When the request that is open is given up.
+    asked: Option<u64>,
     images: Pipeline,
-    /// Safety part of the input image.
+    /// FSInBuffer.
     pub fs_in: Vec<u8>,
-    /// Non-safety part of the input image.
+    /// InBuffer.
     pub nsr_in: Vec<u8>,
-    /// Non-safety part of the output image.
+    /// OutBuffer.
     pub nsr_out: Vec<u8>,
     diags: Vec<(u8, u16)>,
 }
@@ -118,13 +96,13 @@ impl PortUnit {
             l_plus: false,
             power_off_by_service: false,
             device: None,
-            asked: false,
             mode: Mode::Inactive,
             scl: None,
             ossde: None,
             levels: (false, false),
             inputs: Inputs { pd_out: Pd::safe(0), set_sd_c: false, ch_f_ack_c: false },
             outputs: Outputs::initial(pd_in),
+            asked: None,
             images: Pipeline::new(Octets::default(), latency),
             fs_in: Vec::new(),
             nsr_in: Vec::new(),
@@ -154,39 +132,54 @@ impl PortUnit {
         (self.config, self.device) = (config, device);
     }
 
+    /// The port is as it came from the factory, `pd_in` octets of PDin_M; what is connected to it stays.
+    pub fn forget(&mut self, pd_in: u8, seen: &mut Sink<'_>) {
+        self.set_mode(Mode::Inactive, seen);
+        self.supply(false, seen);
+        let fresh = PortUnit::new(self.number, self.edition, pd_in, self.latency, self.mutant);
+        let old = std::mem::replace(self, fresh);
+        (self.device, self.levels, self.inputs) = (old.device, old.levels, old.inputs);
+        self.outputs = old.outputs;
+        self.show(Outputs::initial(pd_in), seen);
+    }
+
     /// SMI_PortConfiguration: the port starts anew, with an SCL of its own.
     pub fn configure(&mut self, now: u64, config: PortConfig, seen: &mut Sink<'_>) {
         self.set_mode(Mode::Inactive, seen);
         (self.scl, self.ossde, self.power_off_by_service) = (None, None, false);
         self.diags.clear();
-        let (mode, off_ms) = (config.port_mode, config.off_ms);
-        let pd = |spdu: u8| match ProtMode::from_code(config.protocol.mode) {
-            Some(mode) => spdu.saturating_sub(mode.spdu_octets(0) as u8),
-            None => 0,
-        };
-        let (pd_in, pd_out) = if mode == port_mode::OSSDE { (1, 0) } else { (pd(config.spdu_in), pd(config.spdu_out)) };
+        let (pd_in, pd_out) = config.pd();
         if self.inputs.pd_out.octets().len() != usize::from(pd_out) {
             self.inputs.pd_out = Pd::safe(pd_out.into());
         }
-        self.images = Pipeline::new(Octets::zero(config.spdu_out.into()), self.latency);
-        self.nsr_out = vec![0; config.nsr.unwrap_or((0, 0)).1.into()];
+        let (safety, off_ms) = (config.is_safety(), config.off_ms);
         self.config = Some(config);
+        self.clear_buffers((0, 0));
         self.show(Outputs::initial(pd_in), seen);
-        match mode {
-            port_mode::SAFETYCOM | port_mode::MIXEDSAFETYCOM if self.l_plus => self.cycle(now, off_ms, seen),
+        if safety && self.l_plus {
+            self.cycle(now, off_ms, seen);
+        } else {
+            self.start(now, seen);
+        }
+    }
+
+    fn port_mode(&self) -> u8 {
+        self.config.as_ref().map_or(port_mode::DEACTIVATED, |config| config.port_mode)
+    }
+
+    fn start(&mut self, now: u64, seen: &mut Sink<'_>) {
+        match self.port_mode() {
             port_mode::SAFETYCOM | port_mode::MIXEDSAFETYCOM => self.wait_on_ready_pulse(now, seen),
             port_mode::IOL_MANUAL | port_mode::IOL_AUTOSTART => {
                 self.supply(true, seen);
                 self.phase = Phase::WakeUp { at: now + MS, done: 0 };
             }
-            port_mode::OSSDE => {
+            mode @ (port_mode::OSSDE | port_mode::DI_CQ | port_mode::DO_CQ) => {
                 self.supply(true, seen);
                 self.phase = Phase::Digital;
-                self.ossde = Some(Ossde::new(now, self.levels.0, self.levels.1, self.inputs.ch_f_ack_c));
-            }
-            port_mode::DI_CQ | port_mode::DO_CQ => {
-                self.supply(true, seen);
-                self.phase = Phase::Digital;
+                if mode == port_mode::OSSDE && self.ossde.is_none() {
+                    self.ossde = Some(Ossde::new(now, self.levels.0, self.levels.1, self.inputs.ch_f_ack_c));
+                }
             }
             _ => {
                 self.supply(false, seen);
@@ -203,8 +196,10 @@ impl PortUnit {
     }
 
     fn set_mode(&mut self, mode: Mode, seen: &mut Sink<'_>) {
+        if mode == Mode::Inactive {
+            self.asked = None;
+        }
         if self.mode != mode {
-            self.asked &= mode != Mode::Inactive;
             self.mode = mode;
             seen.push(Seen::Mode { port: self.number, mode });
         }
@@ -224,7 +219,6 @@ impl PortUnit {
     /// SMI_PortPowerOffOn.
     pub fn switch(&mut self, now: u64, on: bool, back_after_ms: Option<u64>, seen: &mut Sink<'_>) {
         if on {
-            self.power_off_by_service = false;
             if !self.l_plus {
                 self.restart(now, seen);
             }
@@ -241,29 +235,31 @@ impl PortUnit {
         }
     }
 
-    /// The supply comes back: the port starts as it is configured, its SCL goes on.
+    /// The supply comes back: the port starts as it is configured, its SCL goes on. One that is deactivated has its supply
+    /// because it was asked for, and nothing else.
     fn restart(&mut self, now: u64, seen: &mut Sink<'_>) {
-        match self.config.as_ref().map(PortConfig::is_safety) {
-            Some(true) => self.wait_on_ready_pulse(now, seen),
-            Some(false) => {
-                self.supply(true, seen);
-                self.phase = match self.ossde {
-                    Some(_) => Phase::Digital,
-                    None => Phase::WakeUp { at: now + MS, done: 0 },
-                };
-            }
-            None => {}
+        self.power_off_by_service = false;
+        if self.port_mode() == port_mode::DEACTIVATED {
+            self.supply(true, seen);
+            self.phase = Phase::Rest;
+        } else {
+            self.start(now, seen);
         }
+    }
+
+    /// The Ready pulse did not come, nobody answered, or communication is lost: only a new supply cycle brings a new pulse.
+    fn start_again(&mut self, now: u64, seen: &mut Sink<'_>) {
+        let off_ms = self.config.as_ref().map_or(PortConfig::LEAST_OFF_MS, |config| config.off_ms);
+        self.cycle(now, off_ms, seen);
     }
 
     /// A Device is connected, or none.
     pub fn plug(&mut self, now: u64, device: Option<Identity>, seen: &mut Sink<'_>) {
         self.device = device;
         if self.device.is_none() && self.mode != Mode::Inactive {
-            // COMLOST: only a new supply cycle brings a new Ready pulse.
+            // COMLOST
             self.set_mode(Mode::Inactive, seen);
-            let off_ms = self.config.as_ref().map_or(1_000, |config| config.off_ms);
-            self.cycle(now, off_ms, seen);
+            self.start_again(now, seen);
         }
     }
 
@@ -290,14 +286,11 @@ impl PortUnit {
         }
     }
 
-    /// The Device has answered what was sent last.
-    pub fn respond(&mut self, now: u64, _response: &Response, fscp: Option<[u8; 8]>, seen: &mut Sink<'_>) {
-        if !std::mem::take(&mut self.asked) {
-            return seen.push(Seen::Unsupported);
-        }
-        // Table 12 does not say what a refusal leads to: the record has been sent.
+    /// The Device has answered the request that is open. What it says is not looked at: a refused record shows in the SCL.
+    pub fn respond(&mut self, _response: &Response, fscp: Option<[u8; 8]>, seen: &mut Sink<'_>) {
+        self.asked = None;
         if matches!(self.phase, Phase::Record { .. }) {
-            self.operate(now, fscp, seen);
+            self.operate(fscp, seen);
         }
     }
 
@@ -311,6 +304,13 @@ impl PortUnit {
         let scl = self.scl.as_ref().and_then(Scl::due);
         let ossde = self.ossde.as_ref().and_then(Ossde::due);
         [phase, scl, ossde].into_iter().flatten().min()
+    }
+
+    /// Passes over what is due up to `to` and changes nothing.
+    pub fn skip(&mut self, to: u64) {
+        if let Some(scl) = &mut self.scl {
+            scl.skip(to);
+        }
     }
 
     /// What is due at this time is done.
@@ -327,15 +327,12 @@ impl PortUnit {
             let fault = ossde.pass(now);
             self.show_ossde(seen);
             if fault && self.edition == Edition::Iec2022 {
-                self.port_event(0x20F0, seen);
+                self.port_event(OSSD_LOCKED, seen);
             }
         }
         match self.phase {
             Phase::Off { until } if until <= now => self.restart(now, seen),
-            Phase::WaitOnReadyPulse { until, .. } if until <= now => {
-                let off_ms = self.config.as_ref().map_or(1_000, |config| config.off_ms);
-                self.cycle(now, off_ms, seen);
-            }
+            Phase::WaitOnReadyPulse { until, .. } if until <= now => self.start_again(now, seen),
             Phase::WakeUp { at, done } if at <= now => self.wake_up(now, done, fscp, seen),
             Phase::Record { until } if until <= now => self.phase = Phase::Fault,
             _ => {}
@@ -348,11 +345,12 @@ impl PortUnit {
             if done + 1 < WAKE_UPS {
                 self.phase = Phase::WakeUp { at: now + WAKE_UP_RETRY_NS, done: done + 1 };
             } else {
-                let off_ms = self.config.as_ref().map_or(1_000, |config| config.off_ms);
-                self.cycle(now, off_ms, seen);
+                self.start_again(now, seen);
             }
             return;
         };
+        // What was pending belongs to the communication before.
+        self.diags.clear();
         self.set_mode(Mode::Startup, seen);
         let Some(config) = &self.config else { return };
         let manual = config.port_mode != port_mode::IOL_AUTOSTART;
@@ -365,252 +363,64 @@ impl PortUnit {
             self.phase = Phase::Fault;
             return self.port_event(INCORRECT_DEVICE, seen);
         }
-        if !safety || self.mutant == Some(MasterMutant::RecordAfterOperate) {
-            self.operate(now, fscp, seen);
-            if safety {
-                self.send_record(record, seen);
-            }
-            return;
+        if !safety {
+            return self.operate(fscp, seen);
         }
-        self.send_record(record, seen);
-        self.phase = Phase::Record { until: now + RECORD_NS };
+        if self.mutant == Some(MasterMutant::RecordAfterOperate) {
+            self.operate(fscp, seen);
+            return self.ask(now, INDEX_VERIFY, 0, Some(record), seen);
+        }
+        self.ask(now, INDEX_VERIFY, 0, Some(record), seen);
+        self.phase = Phase::Record { until: now + REQUEST_NS };
     }
 
-    fn send_record(&mut self, record: Vec<u8>, seen: &mut Sink<'_>) {
-        self.asked = true;
-        seen.push(Seen::Request { port: self.number, index: INDEX_VERIFY, subindex: 0, data: Some(record) });
+    /// On-request data for the Device.
+    pub fn ask(&mut self, now: u64, index: u16, subindex: u8, data: Option<Vec<u8>>, seen: &mut Sink<'_>) {
+        self.asked = Some(now + REQUEST_NS);
+        seen.push(Seen::Request { port: self.number, index, subindex, data });
     }
 
-    fn operate(&mut self, _now: u64, fscp: Option<[u8; 8]>, seen: &mut Sink<'_>) {
+    /// Whether a request is open: the next one has to wait.
+    pub fn is_asking(&self, now: u64) -> bool {
+        self.asked.is_some_and(|until| now < until)
+    }
+
+    fn operate(&mut self, fscp: Option<[u8; 8]>, seen: &mut Sink<'_>) {
         self.phase = Phase::Operate;
         self.set_mode(Mode::Operate, seen);
         let Some(config) = &self.config else { return };
-        if let (Some(device), None) = (&self.device, config.nsr) {
-            let spdu = if config.is_safety() { (config.spdu_in, config.spdu_out) } else { (0, 0) };
-            self.nsr_out = vec![0; device.pd_out.saturating_sub(spdu.1).into()];
+        let (spdu_in, spdu_out) = config.spdu();
+        let of_device = self
+            .device
+            .map_or((0, 0), |device| (device.pd_in.saturating_sub(spdu_in), device.pd_out.saturating_sub(spdu_out)));
+        let nsr = config.nsr.unwrap_or(of_device);
+        let start = config.is_safety() && self.scl.is_none();
+        let verified = start.then(|| verify::verify(self.edition, self.number, config, fscp));
+        // The SPDU of an SCL that goes on stands all the while.
+        if self.scl.is_none() {
+            self.clear_buffers(nsr);
         }
-        if !config.is_safety() || self.scl.is_some() {
-            return;
-        }
-        match self.verify(config, fscp) {
-            Ok(config) => {
-                self.scl = Some(Scl::start(config));
+        match verified {
+            Some(Ok(verified)) => {
+                self.scl = Some(Scl::start(verified.config(self.mutant)));
                 self.show_scl(seen);
             }
-            Err(code) => self.port_event(code, seen),
+            Some(Err(code)) => self.port_event(code, seen),
+            None => {}
         }
     }
 
-    /// What the SCL of the FS-Master verifies before it starts (10.4.3.1, Table B.2): the EventCode of the first deviation.
-    fn verify(&self, config: &PortConfig, fscp: Option<[u8; 8]>) -> Result<Config, u16> {
-        let code = |number: u16| if self.edition == Edition::V1_1 { 0xB000 + number } else { 0x2000 + number };
-        let record = &config.record;
-        let signed = |from: usize, to: usize| {
-            let sent =
-                record.get(to..to + 2).map(|sent| sent.iter().fold(0, |value, octet| value << 8 | u16::from(*octet)));
-            record.get(from..to).map(|octets| crc16(0, octets)) == sent
-        };
-        let armed = config.protocol.tech_par_crc != 0;
-        let mut own = config.authenticity.authenticity_1.to_be_bytes().to_vec();
-        own.extend(config.authenticity.authenticity_2.to_be_bytes());
-        let authentic = fscp.is_none_or(|fscp| own == fscp);
-        if !signed(0, 9) {
-            return Err(code(5));
-        }
-        if !signed(11, 21) {
-            return Err(code(6));
-        }
-        if config.protocol.watchdog_ms == 0 {
-            return Err(code(9));
-        }
-        if (armed || self.edition == Edition::V1_1) && !authentic {
-            return Err(code(3));
-        }
-        if self.edition == Edition::V1_1 && config.authenticity.port != self.number {
-            return Err(code(4));
-        }
-        let mode = ProtMode::from_code(config.protocol.mode).filter(|_| config.protocol.version == 1).ok_or(code(6))?;
-        let pd = |spdu: u8| {
-            let pd = usize::from(spdu).checked_sub(mode.spdu_octets(0)).filter(|pd| *pd <= mode.max_pd());
-            pd.map(|pd| pd as u8).ok_or(code(6))
-        };
-        Ok(Config {
-            mode,
-            pd_in: pd(config.spdu_in)?,
-            pd_out: pd(config.spdu_out)?,
-            port: Port::new(config.authenticity.port).ok_or(code(6))?,
-            watchdog_ms: config.protocol.watchdog_ms,
-            mutant: self.mutant,
-        })
+    /// The buffers of clause 10.5 hold zeros, so many of them non-safety octets.
+    fn clear_buffers(&mut self, nsr: (u8, u8)) {
+        let (spdu_in, spdu_out) = self.config.as_ref().map_or((0, 0), PortConfig::spdu);
+        self.fs_in = vec![0; spdu_in.into()];
+        self.nsr_in = vec![0; nsr.0.into()];
+        self.nsr_out = vec![0; nsr.1.into()];
+        self.images = Pipeline::new(Octets::zero(usize::from(spdu_out) + self.nsr_out.len()), self.latency);
     }
 
     fn port_event(&mut self, code: u16, seen: &mut Sink<'_>) {
-        self.diags.push((PORT_ERROR_APPEARS, code));
+        self.pend(PORT_ERROR_APPEARS, code);
         seen.push(Seen::Indication { port: self.number, source: Source::Port, qualifier: PORT_ERROR_APPEARS, code });
-    }
-
-    /// The Device raises an Event.
-    pub fn raise(&mut self, code: u16, qualifier: u8, seen: &mut Sink<'_>) {
-        if matches!(self.mode, Mode::Preoperate | Mode::Operate) {
-            if qualifier & APPEARS == APPEARS && qualifier & 0x20 != 0 {
-                self.diags.push((qualifier, code));
-            }
-            seen.push(Seen::Indication { port: self.number, source: Source::Device, qualifier, code });
-        }
-    }
-
-    /// One exchange; `None` when no process data are exchanged.
-    pub fn exchange(&mut self, now: u64, received: Option<&Octets>, seen: &mut Sink<'_>) -> Option<Octets> {
-        if self.mode != Mode::Operate {
-            return None;
-        }
-        let config = self.config.as_ref()?;
-        let (spdu_in, spdu_out) =
-            if config.is_safety() { (config.spdu_in.into(), usize::from(config.spdu_out)) } else { (0, 0) };
-        if let Some(octets) = received {
-            let (safety, other) = octets.as_slice().split_at_checked(spdu_in).unwrap_or((octets.as_slice(), &[]));
-            (self.fs_in, self.nsr_in) = (safety.to_vec(), other.to_vec());
-            if let Some(scl) = &mut self.scl
-                && safety.len() == spdu_in
-            {
-                scl.received(now, safety, &self.inputs);
-                self.show_scl(seen);
-            }
-        }
-        let mut image = self.scl.as_ref().map_or_else(|| vec![0; spdu_out], |scl| scl.spdu().to_vec());
-        image.extend(&self.nsr_out);
-        Some(self.images.pass(Octets::new(&image).unwrap_or_default()))
-    }
-
-    /// Whether an input service was taken.
-    pub fn set(&mut self, service: Service, value: &Octets, seen: &mut Sink<'_>) -> bool {
-        match (service, value.as_slice()) {
-            (Service::PdoutM, octets) => match Pd::new(octets) {
-                Some(pd) => self.inputs.pd_out = pd,
-                None => return false,
-            },
-            (Service::SetsdC, [bit @ (0 | 1)]) => self.inputs.set_sd_c = *bit == 1,
-            (Service::ChfackC, [bit @ (0 | 1)]) => {
-                self.inputs.ch_f_ack_c = *bit == 1;
-                if let Some(ossde) = &mut self.ossde {
-                    ossde.ack_q(*bit == 1);
-                    self.show_ossde(seen);
-                }
-            }
-            _ => return false,
-        }
-        true
-    }
-
-    fn show_scl(&mut self, seen: &mut Sink<'_>) {
-        if let Some(outputs) = self.scl.as_ref().map(|scl| *scl.outputs()) {
-            self.show(outputs, seen);
-        }
-    }
-
-    fn show_ossde(&mut self, seen: &mut Sink<'_>) {
-        let Some(shown) = self.ossde.as_ref().map(Ossde::outputs) else { return };
-        let outputs = Outputs {
-            pd_in: Pd::new(&[if shown.on { 0b11 } else { 0 }]).unwrap_or(Pd::safe(1)),
-            sd_set_s: !shown.qualifier,
-            ch_f_ack_req_s: shown.ch_f_ack_req,
-            faults_s: false,
-            qualifier: shown.qualifier,
-        };
-        self.show(outputs, seen);
-    }
-
-    fn show(&mut self, outputs: Outputs, seen: &mut Sink<'_>) {
-        if outputs != self.outputs {
-            let old = std::mem::replace(&mut self.outputs, outputs);
-            self.report(Some(&old), seen);
-        }
-    }
-
-    /// Reports each output that is not as in `old`, or all of them.
-    fn report(&self, old: Option<&Outputs>, seen: &mut Sink<'_>) {
-        let new = &self.outputs;
-        let mut push = |service, value| seen.push(Seen::Service { port: self.number, service, value });
-        if old.is_none_or(|old| old.pd_in != new.pd_in) {
-            push(Service::PdinM, Octets::new(new.pd_in.octets()).unwrap_or_default());
-        }
-        for (service, value, before) in [
-            (Service::SdsetS, new.sd_set_s, old.map(|old| old.sd_set_s)),
-            (Service::ChfackreqS, new.ch_f_ack_req_s, old.map(|old| old.ch_f_ack_req_s)),
-            (Service::FaultsS, new.faults_s, old.map(|old| old.faults_s)),
-            (Service::Qualifier, new.qualifier, old.map(|old| old.qualifier)),
-        ] {
-            if before != Some(value) {
-                push(service, Octets::bit(value));
-            }
-        }
-    }
-
-    /// What SMI_PortStatus reports.
-    pub fn status(&self) -> PortStatus {
-        let communicates = self.mode != Mode::Inactive;
-        let config = self.config.as_ref();
-        let mode = config.map_or(port_mode::DEACTIVATED, |config| config.port_mode);
-        let info = match (self.phase, self.mode) {
-            _ if mode == port_mode::DEACTIVATED => info::DEACTIVATED,
-            _ if self.power_off_by_service && self.edition == Edition::Iec2022 => info::PORT_POWER_OFF,
-            (Phase::Digital, _) => match mode {
-                port_mode::OSSDE => info::OSSDE,
-                port_mode::DO_CQ => info::DO_CQ,
-                _ => info::DI_CQ,
-            },
-            (Phase::Fault, _) => info::PORT_DIAG,
-            (Phase::Operate, _) if self.scl.is_some() => info::SCL_ENABLED,
-            (Phase::Operate, _) => info::OPERATE,
-            (_, Mode::Preoperate) if self.edition == Edition::V1_1 => info::PREOPERATE,
-            (_, Mode::Preoperate) => info::PORT_DIAG,
-            _ => info::NO_DEVICE,
-        };
-        let nsr = self.device.filter(|_| communicates).zip(config).map_or((0, 0), |(device, config)| {
-            let spdu = if config.is_safety() { (config.spdu_in, config.spdu_out) } else { (0, 0) };
-            (device.pd_in.saturating_sub(spdu.0), device.pd_out.saturating_sub(spdu.1))
-        });
-        PortStatus {
-            info,
-            quality: if self.mode == Mode::Operate { 0 } else { 0b11 },
-            revision_id: self.device.filter(|_| communicates).map_or(0, |device| device.revision_id),
-            transmission_rate: self.device.filter(|_| communicates).map_or(0, |device| device.com),
-            master_cycle_time: self.device.filter(|_| communicates).map_or(0, |device| device.min_cycle_time),
-            nsr,
-            vendor_id: config.map_or(0, |config| config.vendor_id),
-            device_id: config.map_or(0, |config| config.device_id),
-            diags: self.diags.clone(),
-        }
-    }
-
-    /// Whether on-request data for the Device are not answered yet.
-    pub const fn is_asked(&self) -> bool {
-        self.asked
-    }
-
-    /// Mode of the Device on the port.
-    pub const fn mode(&self) -> Mode {
-        self.mode
-    }
-
-    /// Whether an SCL runs.
-    pub const fn has_scl(&self) -> bool {
-        self.scl.is_some()
-    }
-
-    /// Octet 0 of FSInBuffer in OSSDe mode.
-    pub fn ossde_image(&self) -> Option<u8> {
-        self.ossde.as_ref().map(Ossde::image)
-    }
-
-    /// The safety part of the output image.
-    pub fn fs_out(&self) -> Vec<u8> {
-        self.scl.as_ref().map_or_else(Vec::new, |scl| scl.spdu().to_vec())
-    }
-
-    /// On-request data for the Device on behalf of an SMI client.
-    pub fn ask(&mut self, index: u16, subindex: u8, data: Option<Vec<u8>>, seen: &mut Sink<'_>) {
-        self.asked = true;
-        seen.push(Seen::Request { port: self.number, index, subindex, data });
     }
 }

@@ -21,15 +21,18 @@ enum Refusal {
     DeviceNotAccessible,
     ServiceNotSupported,
     ServiceTempUnavailable,
+    /// The result would have to wait for the Device, which the contract does not provide for.
+    WaitsForDevice,
 }
 
 impl Refusal {
     fn number(self, edition: Edition) -> u16 {
         match (edition, self) {
             (Edition::V1_1, Refusal::DeviceNotInOperate | Refusal::DeviceNotAccessible) => error_info::NO_COM,
-            (Edition::V1_1, Refusal::ServiceNotSupported | Refusal::ServiceTempUnavailable) => {
-                error_info::STATE_CONFLICT
-            }
+            (
+                Edition::V1_1,
+                Refusal::ServiceNotSupported | Refusal::ServiceTempUnavailable | Refusal::WaitsForDevice,
+            ) => error_info::STATE_CONFLICT,
             (Edition::V1_1, _) => error_info::OUT_OF_RANGE,
             (_, Refusal::PortNumInvalid) => job_error::PORT_NUM_INVALID,
             (_, Refusal::ArgBlockNotSupported) => job_error::ARGBLOCK_NOT_SUPPORTED,
@@ -38,7 +41,7 @@ impl Refusal {
             (_, Refusal::DeviceNotInOperate) => job_error::DEVICE_NOT_IN_OPERATE,
             (_, Refusal::DeviceNotAccessible) => job_error::DEVICE_NOT_ACCESSIBLE,
             (_, Refusal::ServiceNotSupported) => job_error::SERVICE_NOT_SUPPORTED,
-            (_, Refusal::ServiceTempUnavailable) => job_error::SERVICE_TEMP_UNAVAILABLE,
+            (_, Refusal::ServiceTempUnavailable | Refusal::WaitsForDevice) => job_error::SERVICE_TEMP_UNAVAILABLE,
         }
     }
 }
@@ -84,6 +87,9 @@ impl FsMaster {
         let edition = self.variant.edition;
         let shape = shape(edition, request.service);
         let outcome = self.checked(request, &shape).and_then(|()| self.serve(request, &shape, seen));
+        if outcome == Err(Refusal::WaitsForDevice) {
+            return seen.push(Seen::Unsupported);
+        }
         let positive = outcome.is_ok();
         let octets = match (outcome, edition) {
             (Ok(block), _) => block,
@@ -105,8 +111,11 @@ impl FsMaster {
     fn checked(&self, request: &SmiRequest, shape: &Shape) -> Result<(), Refusal> {
         let edition = self.variant.edition;
         let whole = matches!(request.service, SmiService::MasterIdentification | SmiService::FsMasterAccess);
-        let exists = usize::from(request.port).checked_sub(1).is_some_and(|index| index < self.ports.len());
-        if !exists && !(whole && request.port == 0) {
+        let exists = match request.port {
+            0 => whole,
+            number => usize::from(number) <= self.ports.len(),
+        };
+        if !exists {
             return Err(Refusal::PortNumInvalid);
         }
         let octets = &request.octets;
@@ -123,16 +132,14 @@ impl FsMaster {
                 _ => Ok(()),
             };
         }
-        if request.service == SmiService::FsPdInOut || edition == Edition::Iec2022 {
-            if octets.first_chunk() != Some(&shape.request.to_be_bytes()) {
-                return Err(Refusal::ArgBlockNotSupported);
-            }
-            if !(shape.octets.0..=shape.octets.1).contains(&octets.len()) {
-                return Err(Refusal::ArgBlockLengthInvalid);
-            }
-            if request.expected != shape.result {
-                return Err(Refusal::ArgBlockInconsistent);
-            }
+        if octets.first_chunk() != Some(&shape.request.to_be_bytes()) {
+            return Err(Refusal::ArgBlockNotSupported);
+        }
+        if !(shape.octets.0..=shape.octets.1).contains(&octets.len()) {
+            return Err(Refusal::ArgBlockLengthInvalid);
+        }
+        if request.expected != shape.result {
+            return Err(Refusal::ArgBlockInconsistent);
         }
         Ok(())
     }
@@ -186,7 +193,7 @@ impl FsMaster {
                 if !matches!(port.mode(), Mode::Preoperate | Mode::Operate) {
                     return Err(Refusal::DeviceNotAccessible);
                 }
-                if port.is_asked() {
+                if port.is_asking(now) {
                     return Err(Refusal::ServiceTempUnavailable);
                 }
                 let [_, _, high, low, subindex, data @ ..] = octets.as_slice() else {
@@ -194,9 +201,9 @@ impl FsMaster {
                 };
                 let index = u16::from_be_bytes([*high, *low]);
                 let write = request.service == SmiService::DeviceWrite;
-                port.ask(index, *subindex, write.then(|| data.to_vec()), seen);
-                // The answer of the Device comes later than the result of the service has to.
-                if write { Ok(nothing()) } else { Err(Refusal::ServiceTempUnavailable) }
+                port.ask(now, index, *subindex, write.then(|| data.to_vec()), seen);
+                // A write is accepted whatever the Device will say; a value can only come from the Device.
+                if write { Ok(nothing()) } else { Err(Refusal::WaitsForDevice) }
             }
             SmiService::PdIn | SmiService::PdInOut if port.mode() != Mode::Operate => Err(Refusal::DeviceNotInOperate),
             SmiService::PdIn => Ok(block(&port.nsr_in)),
@@ -225,7 +232,10 @@ impl FsMaster {
                 (None, Mode::Operate) => Ok(block(&port.fs_in)),
                 _ => Err(Refusal::DeviceNotInOperate),
             },
-            SmiService::SpduOut if port.has_scl() || !safety => Err(Refusal::ServiceNotSupported),
+            // FSOutBuffer belongs to the SCL, or is all zeros until it starts.
+            SmiService::SpduOut if port.has_scl() || !safety || port.mode() == Mode::Operate => {
+                Err(Refusal::ServiceNotSupported)
+            }
             SmiService::SpduOut => Err(Refusal::DeviceNotInOperate),
             SmiService::FsPdInOut if edition == Edition::V1_1 => Err(Refusal::ServiceNotSupported),
             SmiService::FsPdInOut => {
@@ -256,12 +266,8 @@ impl FsMaster {
             let (password, reset) = (number(2), number(6));
             if reset != 0 && reset == self.options.reset_password {
                 self.password = 0;
-                let (variant, options) = (self.variant, self.options);
-                for (port, number) in self.ports.iter_mut().zip(1..) {
-                    port.power_off();
-                    *port = super::port_unit(number, variant, options);
-                    port.power_on(self.now, seen);
-                }
+                let pd_in = self.variant.pd_in;
+                self.ports.iter_mut().for_each(|port| port.forget(pd_in, seen));
             } else if password != self.password {
                 return Err(Refusal::ArgBlockInconsistent);
             }
