@@ -146,6 +146,7 @@ pub struct Words<'w, M, S> {
     /// What is seen, against a snapshot.
     pub differences: &'w dyn Fn(&S) -> Vec<Difference>,
     /// Kind and clause of a mismatch that is a matter of the watchdog alone.
+    #[expect(clippy::type_complexity, reason = "said once, here")]
     pub timing: &'w dyn Fn(&Config<M, S>, &S, &[Difference]) -> Option<(String, String)>,
 }
 

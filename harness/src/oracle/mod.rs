@@ -26,6 +26,7 @@ use fsct_protocol::scl::State;
 
 /// The oracle of one link, by the side the DUT is on.
 #[derive(Debug)]
+#[expect(clippy::large_enum_variant, reason = "one per link, made once and not moved in the exchanges")]
 pub enum Oracle {
     /// The DUT is an FS-Device.
     Device(DeviceOracle),
