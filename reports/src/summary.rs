@@ -2,6 +2,7 @@
 
 use crate::decode::Side;
 use crate::journal::{ReadError, Reader, Run};
+use crate::machine::Machine;
 use crate::record::{CaseRecord, DutInfo, Execution, Footer, Header, Verdict};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -93,6 +94,12 @@ impl Summary {
     /// Cases with this verdict.
     pub fn count(&self, verdict: Verdict) -> usize {
         self.verdicts.get(verdict_name(verdict)).copied().unwrap_or(0)
+    }
+
+    /// The transitions that no case took, in the order of the standard's tables.
+    pub fn not_taken(&self) -> Vec<String> {
+        let all = Machine::ALL.into_iter().flat_map(Machine::transitions);
+        all.filter(|name| self.transitions.get(name) == Some(&0)).collect()
     }
 
     /// The exit code of the run. These never change:

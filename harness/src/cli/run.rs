@@ -372,14 +372,12 @@ fn conclude(args: &Args, plans: &[Plan<'_>], summary: &Summary, interrupted: boo
         .verdicts
         .iter()
         .filter(|(_, count)| **count > 0)
-        .map(|(verdict, count)| format!("{count} {verdict}"))
+        .map(|(verdict, count)| format!(", {count} {verdict}"))
         .collect();
-    let unseen: Vec<&str> =
-        summary.transitions.iter().filter(|(_, count)| **count == 0).map(|(name, _)| name.as_str()).collect();
-    let coverage = if unseen.is_empty() {
-        "every transition taken".to_owned()
-    } else {
-        format!("not taken: {}", unseen.join(" "))
+    let coverage = match (summary.cases, summary.not_taken().as_slice()) {
+        (0, _) => String::new(),
+        (_, []) => " · every transition taken".to_owned(),
+        (_, names) => format!(" · not taken: {}", names.join(" ")),
     };
     let verdict = match summary.exit_code() {
         0 => "conformant",
@@ -390,9 +388,9 @@ fn conclude(args: &Args, plans: &[Plan<'_>], summary: &Summary, interrupted: boo
     };
     let (bold, plain) = if coloured { ("\x1b[1m", "\x1b[0m") } else { ("", "") };
     print(format!(
-        "{bold}{verdict}{plain}: {} cases, {} · {coverage} · seed {}",
+        "{bold}{verdict}{plain}: {} cases{}{coverage} · seed {}",
         summary.cases,
-        counts.join(", "),
+        counts.concat(),
         summary.seed
     ));
     let not_applicable: usize = plans.iter().map(|plan| plan.not_applicable.len()).sum();

@@ -1,7 +1,7 @@
 //! One configuration a DUT may be in: its machine, its timer, and the SPDUs it has made but may not show yet.
 
 use super::Mask;
-use fsct_protocol::scl::{Path, T};
+use fsct_protocol::scl::{Path, State, T};
 use fsct_protocol::spdu::Pd;
 
 /// The longest answer latency that can be followed, in exchanges.
@@ -14,6 +14,12 @@ pub const TRANSITIONS: usize = 14;
 pub trait Machine: Copy + PartialEq {
     /// Number of its first transition.
     const FIRST: u8;
+
+    /// The state before its first transition.
+    const START: State;
+
+    /// The state it is in.
+    fn state(&self) -> State;
 }
 
 /// What a DUT shows from a certain exchange on: its SPDU and its application services.

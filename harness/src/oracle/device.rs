@@ -1,18 +1,15 @@
 //! The oracle for an FS-Device: Table 40 interpreted over everything a conformant product may be doing.
 
-use super::config::{Config, Machine, Snapshot, TRANSITIONS, Window};
+use super::config::{Config, Machine, Snapshot, Window};
 use super::explain::{self, Mismatch, Words, hex};
+use super::set::{self, Set};
 use super::setup::{App, Setup};
-use super::{Mask, config, explain_device};
+use super::{Mask, explain_device};
 use fsct_adapters::{Octets, Service};
 use fsct_protocol::Edition;
 use fsct_protocol::scl::device::{Readings, Received};
 use fsct_protocol::scl::{Device, Path, State, T, Var};
 use fsct_protocol::spdu::{Pd, Status, View};
-use fsct_reports::record::Verdict;
-
-/// More configurations than this are not followed.
-const MAX_SET: usize = 64;
 
 /// Bits of the status octet that a tolerance leaves free, with the tolerance.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
@@ -48,6 +45,11 @@ pub struct Answer {
 
 impl Machine for Device {
     const FIRST: u8 = 20;
+    const START: State = State(20);
+
+    fn state(&self) -> State {
+        Device::state(self)
+    }
 }
 
 impl Snapshot for Answer {
@@ -102,18 +104,11 @@ struct Incoming {
 pub struct DeviceOracle {
     setup: Setup,
     phase: Phase,
-    configs: Vec<DeviceConfig>,
-    stepped: Vec<DeviceConfig>,
-    /// Exchanges so far.
-    exchange: u64,
-    last_at: u64,
+    set: Set<Device, Answer>,
     /// Values of PDin_D since power-on; the generation counts them.
     pdin: Vec<Pd>,
     sdset_ds: bool,
     sdset_ds_changed: bool,
-    /// Of earlier power cycles in the same case.
-    taken_before: [u64; TRANSITIONS],
-    used_before: Mask,
 }
 
 impl DeviceOracle {
@@ -123,14 +118,9 @@ impl DeviceOracle {
             pdin: vec![Pd::safe(setup.pd_in)],
             setup,
             phase: Phase::Off,
-            configs: Vec::new(),
-            stepped: Vec::new(),
-            exchange: 0,
-            last_at: 0,
+            set: Set::new(),
             sdset_ds: false,
             sdset_ds_changed: false,
-            taken_before: [0; TRANSITIONS],
-            used_before: Mask::NONE,
         }
     }
 
@@ -141,9 +131,7 @@ impl DeviceOracle {
 
     /// Supply on or off. The machine of before is gone; its transitions and tolerances stay counted.
     pub fn power(&mut self, on: bool) {
-        self.taken_before = self.taken();
-        self.used_before = self.used();
-        self.configs.clear();
+        self.set.forget();
         self.pdin = vec![Pd::safe(self.setup.pd_in)];
         self.sdset_ds = false;
         self.sdset_ds_changed = false;
@@ -155,7 +143,7 @@ impl DeviceOracle {
         self.phase = Phase::Ready { since: at };
         let safe = Pd::safe(self.setup.pd_out);
         let idle = Answer {
-            made: self.exchange,
+            made: self.set.exchange,
             status: None,
             free: Free::default(),
             pdin: (0, 0),
@@ -164,7 +152,7 @@ impl DeviceOracle {
             ch_f_ack_req_dc: None,
             path: Path::default(),
         };
-        self.configs = vec![Config::new(Device::new(Readings::default()), idle, safe)];
+        self.set.begin(Device::new(Readings::default()), idle, safe);
     }
 
     /// An input service of the application was set.
@@ -190,7 +178,7 @@ impl DeviceOracle {
         image: Option<&[u8]>,
         app: &App,
     ) -> Result<(), Mismatch> {
-        self.exchange += 1;
+        self.set.exchange += 1;
         let image = image.filter(|octets| octets.iter().any(|octet| *octet != 0));
         match self.phase {
             Phase::Off => return Ok(()),
@@ -198,27 +186,22 @@ impl DeviceOracle {
             Phase::Ready { .. } => {}
         }
         let incoming = received.and_then(|octets| self.read(octets));
-        let mut before = std::mem::take(&mut self.configs);
-        let mut stepped = std::mem::take(&mut self.stepped);
-        stepped.clear();
+        let (mut before, mut stepped) = self.set.open();
         for config in before.drain(..) {
-            self.step(config, at, incoming, &mut stepped);
+            let expire = |config: &mut DeviceConfig, window| self.expire(config, at, window);
+            set::timed(config, at, expire, |config| self.receive(config, at, incoming, &mut stepped));
         }
         if incoming.is_some() && stepped.iter().any(|config| !config.via[0].is_empty()) {
             self.sdset_ds_changed = false;
         }
-        self.last_at = at;
+        self.set.last_at = at;
         let verdict = self.observe(&mut stepped, image, app);
-        self.stepped = before;
-        self.configs = stepped;
+        self.set.close(before, stepped);
         verdict
     }
 
     fn idle(&self, image: Option<&[u8]>, app: &App) -> Result<(), Mismatch> {
-        let fail = |kind: &str, clause: &str, expected: &str, observed: String| {
-            let (kind, clause, expected) = (kind.to_owned(), clause.to_owned(), expected.to_owned());
-            Err(Mismatch { verdict: Verdict::Fail, kind, clause, expected, observed })
-        };
+        let fail = |kind, clause, expected, observed| Err(Mismatch::fail(kind, clause, expected, observed));
         if let Some(octets) = image {
             return fail("idle", "11.5.3, 11.5.7", "an image of all zero: the SCL has not been started", hex(octets));
         }
@@ -239,46 +222,16 @@ impl DeviceOracle {
         Some(Incoming { received: Received { control: view.control(), intact }, pd: Pd::new(view.pd())? })
     }
 
-    fn step(&self, mut config: DeviceConfig, at: u64, incoming: Option<Incoming>, out: &mut Vec<DeviceConfig>) {
-        config.via = Default::default();
-        match config.timer {
-            Some(window) if at >= window.earliest => {
-                if at <= window.latest {
-                    self.receive(config, at, incoming, out);
-                }
-                self.expire(&mut config, at, window);
-                self.receive(config, at, incoming, out);
-            }
-            _ => self.receive(config, at, incoming, out),
-        }
-    }
-
     fn expire(&self, config: &mut DeviceConfig, at: u64, window: Window) {
         let had_comm_err = config.machine.get(Var::DcommErr) == 1;
         let path = config.machine.expire();
-        let earliest = window.earliest.max(self.last_at);
-        let latest = window.latest.min(at);
-        let mut next = self.window(earliest, latest);
-        if next.latest < at {
-            // Several expiries since the last exchange: they look like one, and the next may come any time.
-            next = Window { earliest: at, latest: self.window(at, at).latest };
-        }
-        config.timer = Some(next);
+        config.timer = Some(self.setup.watchdog_again(window, self.set.last_at, at));
         let mut free = Free::default();
         if had_comm_err && path.iter().any(|t| t == T(30)) {
             free.d_comm_err = 33;
         }
         config.took(path);
         self.answer(config, free, path, config.newest().ch_f_ack_req_dc);
-    }
-
-    fn window(&self, started_earliest: u64, started_latest: u64) -> Window {
-        let Setup { watchdog_ns, tick_ns, margin_ns, uncertainty_ns, .. } = self.setup;
-        let slack = tick_ns + uncertainty_ns;
-        Window {
-            earliest: (started_earliest + watchdog_ns).saturating_sub(slack),
-            latest: started_latest + watchdog_ns + slack + margin_ns,
-        }
     }
 
     fn receive(&self, mut config: DeviceConfig, at: u64, incoming: Option<Incoming>, out: &mut Vec<DeviceConfig>) {
@@ -366,7 +319,7 @@ impl DeviceOracle {
         config.machine.set_sdset_ds(self.sdset_ds);
         let path = config.machine.process(incoming.received, valid);
         config.received = incoming.pd;
-        config.timer = Some(self.window(at, at));
+        config.timer = Some(self.setup.watchdog(at, at));
         let mut free = Free::default();
         let status = config.machine.status();
         // The technology may report its safe state by SDset_DS; without upper tester nobody knows when.
@@ -389,7 +342,7 @@ impl DeviceOracle {
         let leaves_fault = path.iter().any(|t| t == T(28));
         let newest = self.pdin.len().saturating_sub(1) as u32;
         let snapshot = Answer {
-            made: self.exchange,
+            made: self.set.exchange,
             status: Some(config.machine.status()),
             free,
             pdin: (config.newest().pdin.1, newest),
@@ -402,15 +355,6 @@ impl DeviceOracle {
     }
 
     fn observe(&self, stepped: &mut Vec<DeviceConfig>, image: Option<&[u8]>, app: &App) -> Result<(), Mismatch> {
-        if stepped.len() > MAX_SET {
-            return Err(Mismatch {
-                verdict: Verdict::Inconclusive,
-                kind: "too-many-configurations".into(),
-                clause: String::new(),
-                expected: format!("at most {MAX_SET} configurations to follow"),
-                observed: format!("{}", stepped.len()),
-            });
-        }
         let malformed = image.and_then(|octets| explain::form(&self.setup, octets));
         let view = image.and_then(|octets| View::new(octets, self.setup.mode, self.setup.pd_in).ok());
         let link = |snapshot: &Answer| match (&snapshot.status, image) {
@@ -421,30 +365,18 @@ impl DeviceOracle {
             (Some(_), Some(_)) => self.explains(snapshot, view?),
         };
         let services = |snapshot: &Answer| self.reported(snapshot, app).then_some(Mask::NONE);
-        let mut explained = 0u64;
-        for (index, config) in stepped.iter_mut().enumerate() {
-            if config.observe(self.exchange, self.setup.latency, link, services) {
-                explained |= 1 << index;
-            }
-        }
-        if explained == 0 {
+        let tell = |configs: &[DeviceConfig]| {
             let view = view.filter(|_| malformed.is_none());
-            return Err(malformed.unwrap_or_else(|| {
+            malformed.clone().unwrap_or_else(|| {
                 let differences = |snap: &Answer| {
                     explain_device::differences(&self.setup, snap, view, app, &self.pdin_texts(snap.pdin))
                 };
                 let words =
                     Words { table: explain_device::TABLE, differences: &differences, timing: &explain_device::timing };
-                explain::nearest(stepped, self.exchange, self.setup.latency, &words)
-            }));
-        }
-        let mut index = 0;
-        stepped.retain(|_| {
-            index += 1;
-            explained >> (index - 1) & 1 == 1
-        });
-        config::merge(stepped);
-        Ok(())
+                explain::nearest(configs, self.set.exchange, self.setup.latency, &words)
+            })
+        };
+        self.set.observe(stepped, self.setup.latency, link, services, tell)
     }
 
     fn explains(&self, snapshot: &Answer, view: View<'_>) -> Option<Mask> {
@@ -504,37 +436,8 @@ impl DeviceOracle {
         self.setup.allowed.has(number)
     }
 
-    /// The configuration that needs the fewest tolerances.
-    fn best(&self) -> Option<&DeviceConfig> {
-        self.configs.iter().min_by_key(|config| config.used.len())
-    }
-
-    /// Transitions the DUT took, T20..T31, over the whole case.
-    pub fn taken(&self) -> [u64; TRANSITIONS] {
-        let mut taken = self.taken_before;
-        if let Some(best) = self.best() {
-            taken.iter_mut().zip(best.taken).for_each(|(sum, count)| *sum += u64::from(count));
-        }
-        taken
-    }
-
-    /// Tolerances the DUT made use of, over the whole case.
-    pub fn used(&self) -> Mask {
-        self.used_before.union(self.best().map_or(Mask::NONE, |config| config.used))
-    }
-
-    /// Transitions of the latest exchange.
-    pub fn via(&self) -> impl Iterator<Item = T> + '_ {
-        self.best().into_iter().flat_map(|config| config.via.iter().flat_map(|path| path.iter()))
-    }
-
-    /// Whether the SCL of the DUT may still be on its way from state 20 to 21.
-    pub fn may_be_starting(&self) -> bool {
-        self.configs.iter().any(|config| config.machine.state() == State(20))
-    }
-
-    /// The state the DUT is in as far as it can be told; `None` without supply or before FSP parameterization.
-    pub fn state(&self) -> Option<State> {
-        self.best().map(|config| config.machine.state())
+    /// What is followed.
+    pub const fn set(&self) -> &Set<Device, Answer> {
+        &self.set
     }
 }

@@ -24,6 +24,14 @@ pub struct Mismatch {
     pub observed: String,
 }
 
+impl Mismatch {
+    /// One that fails the DUT.
+    pub fn fail(kind: &str, clause: &str, expected: &str, observed: String) -> Mismatch {
+        let (kind, clause, expected) = (kind.to_owned(), clause.to_owned(), expected.to_owned());
+        Mismatch { verdict: Verdict::Fail, kind, clause, expected, observed }
+    }
+}
+
 /// Octets of an image that are no SPDU of the configured size, or carry a signature, PortNum or reserved bits that no
 /// SPDU of this side ever carries. `None`: nothing wrong with the form.
 pub fn form(setup: &Setup, octets: &[u8]) -> Option<Mismatch> {

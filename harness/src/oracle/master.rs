@@ -1,18 +1,16 @@
 //! The oracle for one port of an FS-Master: Table 38 interpreted over everything a conformant product may be doing, the
 //! services at the gateway included.
 
-use super::config::{Config, Machine, Snapshot, TRANSITIONS, Window};
+use super::config::{Config, Machine, Snapshot, Window};
 use super::explain::{self, Mismatch, Words, data};
+use super::set::{self, Set};
 use super::setup::{App, Setup};
-use super::{Mask, config, explain_master};
+use super::{Mask, explain_master};
 use fsct_adapters::{Octets, Service};
 use fsct_protocol::scl::master::Answer;
 use fsct_protocol::scl::{Master, Path, State, T, Var};
 use fsct_protocol::spdu::{Control, Pd, View};
-use fsct_reports::record::Verdict;
 
-/// More configurations than this are not followed.
-const MAX_SET: usize = 64;
 /// SPDUs with SD that the text asks for after a fault (A13).
 const SD_CYCLES: u8 = 3;
 
@@ -93,6 +91,11 @@ pub struct Port {
 
 impl Machine for Port {
     const FIRST: u8 = 1;
+    const START: State = State(0);
+
+    fn state(&self) -> State {
+        self.master.state()
+    }
 }
 
 type MasterConfig = Config<Port, Spdu>;
@@ -119,18 +122,11 @@ enum Incoming {
 pub struct MasterOracle {
     setup: Setup,
     phase: Phase,
-    configs: Vec<MasterConfig>,
-    stepped: Vec<MasterConfig>,
-    /// Exchanges so far.
-    exchange: u64,
-    last_at: u64,
+    set: Set<Port, Spdu>,
     /// Values of PDout_M since power-on; the generation counts them.
     pdout: Vec<Pd>,
     ack: bool,
     set_sd: bool,
-    /// Of earlier SCL instances in the same case.
-    taken_before: [u64; TRANSITIONS],
-    used_before: Mask,
 }
 
 impl MasterOracle {
@@ -140,14 +136,9 @@ impl MasterOracle {
             pdout: vec![Pd::safe(setup.pd_out)],
             setup,
             phase: Phase::Off,
-            configs: Vec::new(),
-            stepped: Vec::new(),
-            exchange: 0,
-            last_at: 0,
+            set: Set::new(),
             ack: false,
             set_sd: false,
-            taken_before: [0; TRANSITIONS],
-            used_before: Mask::NONE,
         }
     }
 
@@ -166,9 +157,7 @@ impl MasterOracle {
 
     /// The SCL instance is gone: supply off, or the port configured anew.
     pub fn stop(&mut self) {
-        self.taken_before = self.taken();
-        self.used_before = self.used();
-        self.configs.clear();
+        self.set.forget();
         if self.phase != Phase::Off {
             self.phase = Phase::Idle;
         }
@@ -182,7 +171,7 @@ impl MasterOracle {
         self.phase = Phase::Ready { since: at };
         let safe = Pd::safe(self.setup.pd_in);
         let idle = Spdu {
-            made: self.exchange,
+            made: self.set.exchange,
             control: None,
             pdout: None,
             sdout: 0,
@@ -194,7 +183,7 @@ impl MasterOracle {
         };
         let (ack, set_sd) = (Seen::only(self.ack), Seen::only(self.set_sd));
         let port = Port { master: Master::new(), ack, set_sd, sd: 0, foreign: false };
-        self.configs = vec![Config::new(port, idle, safe)];
+        self.set.begin(port, idle, safe);
     }
 
     /// An input service of the gateway was set.
@@ -203,14 +192,11 @@ impl MasterOracle {
             Service::PdoutM => self.pdout.extend(Pd::new(value.as_slice())),
             Service::ChfackC => {
                 self.ack = value.is_set();
-                self.configs.iter_mut().for_each(|config| config.machine.ack = config.machine.ack.and(value.is_set()));
+                self.set.machines().for_each(|port| port.ack = port.ack.and(value.is_set()));
             }
             Service::SetsdC => {
                 self.set_sd = value.is_set();
-                let seen = |config: &mut MasterConfig| {
-                    config.machine.set_sd = config.machine.set_sd.and(value.is_set());
-                };
-                self.configs.iter_mut().for_each(seen);
+                self.set.machines().for_each(|port| port.set_sd = port.set_sd.and(value.is_set()));
             }
             _ => {}
         }
@@ -227,7 +213,7 @@ impl MasterOracle {
         image: Option<&[u8]>,
         app: &App,
     ) -> Result<(), Mismatch> {
-        self.exchange += 1;
+        self.set.exchange += 1;
         let image = image.filter(|octets| octets.iter().any(|octet| *octet != 0));
         match self.phase {
             Phase::Off => return Ok(()),
@@ -235,24 +221,19 @@ impl MasterOracle {
             Phase::Ready { .. } => {}
         }
         let incoming = received.and_then(|octets| self.read(octets));
-        let mut before = std::mem::take(&mut self.configs);
-        let mut stepped = std::mem::take(&mut self.stepped);
-        stepped.clear();
+        let (mut before, mut stepped) = self.set.open();
         for config in before.drain(..) {
-            self.step(config, at, incoming, &mut stepped);
+            let expire = |config: &mut MasterConfig, window| self.expire(config, at, window);
+            set::timed(config, at, expire, |config| self.receive(config, at, incoming, &mut stepped));
         }
-        self.last_at = at;
+        self.set.last_at = at;
         let verdict = self.observe(&mut stepped, image, app);
-        self.stepped = before;
-        self.configs = stepped;
+        self.set.close(before, stepped);
         verdict
     }
 
     fn idle(&self, image: Option<&[u8]>, app: &App) -> Result<(), Mismatch> {
-        let fail = |kind: &str, clause: &str, expected: &str, observed: String| {
-            let (kind, clause, expected) = (kind.to_owned(), clause.to_owned(), expected.to_owned());
-            Err(Mismatch { verdict: Verdict::Fail, kind, clause, expected, observed })
-        };
+        let fail = |kind, clause, expected, observed| Err(Mismatch::fail(kind, clause, expected, observed));
         let spdu =
             image.and_then(|octets| octets.get(..self.setup.mode.spdu_octets(self.setup.pd_out)).or(Some(octets)));
         if let Some(octets) = spdu.filter(|octets| octets.iter().any(|octet| *octet != 0)) {
@@ -281,42 +262,11 @@ impl MasterOracle {
         Some(Incoming::Answer(Answer { status: view.status(), intact }, Pd::new(view.pd())?))
     }
 
-    fn step(&self, mut config: MasterConfig, at: u64, incoming: Option<Incoming>, out: &mut Vec<MasterConfig>) {
-        config.via = Default::default();
-        match config.timer {
-            Some(window) if at >= window.earliest => {
-                if at <= window.latest {
-                    self.receive(config, at, incoming, out);
-                }
-                self.expire(&mut config, at, window);
-                self.receive(config, at, incoming, out);
-            }
-            _ => self.receive(config, at, incoming, out),
-        }
-    }
-
     fn expire(&self, config: &mut MasterConfig, at: u64, window: Window) {
         let path = config.machine.master.expire();
-        let earliest = window.earliest.max(self.last_at);
-        let latest = window.latest.min(at);
-        let mut next = self.window(earliest, latest);
-        if next.latest < at {
-            // Several expiries since the last exchange: they look like one, and the next may come any time.
-            next = Window { earliest: at, latest: self.window(at, at).latest };
-        }
-        config.timer = Some(next);
+        config.timer = Some(self.setup.watchdog_again(window, self.set.last_at, at));
         config.machine.sd = 1;
         self.send(config, path, false);
-    }
-
-    /// MTimer starts when the SPDU is handed over: on the line it may expire up to one MasterCycleTime early (A24).
-    fn window(&self, started_earliest: u64, started_latest: u64) -> Window {
-        let Setup { watchdog_ns, tick_ns, margin_ns, uncertainty_ns, cycle_ns, .. } = self.setup;
-        let slack = tick_ns + uncertainty_ns;
-        Window {
-            earliest: (started_earliest + watchdog_ns).saturating_sub(slack + cycle_ns),
-            latest: started_latest + watchdog_ns + slack + margin_ns,
-        }
     }
 
     fn receive(&self, mut config: MasterConfig, at: u64, incoming: Option<Incoming>, out: &mut Vec<MasterConfig>) {
@@ -392,7 +342,7 @@ impl MasterOracle {
             _ => {}
         }
         config.received = pd;
-        config.timer = config.machine.master.timer_runs().then(|| self.window(at, at));
+        config.timer = config.machine.master.timer_runs().then(|| self.setup.watchdog(at, at));
         self.send(&mut config, path, answer.status.sd_set);
         config
     }
@@ -405,7 +355,7 @@ impl MasterOracle {
         let earlier = config.newest().pdout.map_or(newest.saturating_sub(1), |range| range.1);
         let recovered = path.iter().any(|t| t == T(11));
         let snapshot = Spdu {
-            made: self.exchange,
+            made: self.set.exchange,
             control: Some(master.control()),
             pdout: is(Var::Out).then_some((earlier.min(newest), newest)),
             sdout: if is(Var::Out) && sd_set { 22 } else { 0 },
@@ -419,15 +369,6 @@ impl MasterOracle {
     }
 
     fn observe(&self, stepped: &mut Vec<MasterConfig>, image: Option<&[u8]>, app: &App) -> Result<(), Mismatch> {
-        if stepped.len() > MAX_SET {
-            return Err(Mismatch {
-                verdict: Verdict::Inconclusive,
-                kind: "too-many-configurations".into(),
-                clause: String::new(),
-                expected: format!("at most {MAX_SET} configurations to follow"),
-                observed: format!("{}", stepped.len()),
-            });
-        }
         let malformed = image.and_then(|octets| explain::form(&self.setup, octets));
         let view = image.and_then(|octets| View::new(octets, self.setup.mode, self.setup.pd_out).ok());
         let link = |snapshot: &Spdu| match (&snapshot.control, image) {
@@ -437,32 +378,20 @@ impl MasterOracle {
             (Some(_), Some(_)) => self.explains(snapshot, view?),
         };
         let services = |snapshot: &Spdu| self.reported(snapshot, app);
-        let mut explained = 0u64;
-        for (index, config) in stepped.iter_mut().enumerate() {
-            if config.observe(self.exchange, self.setup.latency, link, services) {
-                explained |= 1 << index;
-            }
-        }
-        if explained == 0 {
+        let tell = |configs: &[MasterConfig]| {
             let view = view.filter(|_| malformed.is_none());
-            return Err(malformed.unwrap_or_else(|| {
+            malformed.clone().unwrap_or_else(|| {
                 let differences = |snap: &Spdu| {
                     explain_master::differences(&self.setup, snap, view, app, &self.pdout_texts(snap.pdout))
                 };
                 let timing = |config: &MasterConfig, snap: &Spdu, differences: &[explain::Difference]| {
-                    explain_master::timing(self.exchange, config, snap, differences)
+                    explain_master::timing(self.set.exchange, config, snap, differences)
                 };
                 let words = Words { table: explain_master::TABLE, differences: &differences, timing: &timing };
-                explain::nearest(stepped, self.exchange, self.setup.latency, &words)
-            }));
-        }
-        let mut index = 0;
-        stepped.retain(|_| {
-            index += 1;
-            explained >> (index - 1) & 1 == 1
-        });
-        config::merge(stepped);
-        Ok(())
+                explain::nearest(configs, self.set.exchange, self.setup.latency, &words)
+            })
+        };
+        self.set.observe(stepped, self.setup.latency, link, services, tell)
     }
 
     fn explains(&self, snapshot: &Spdu, view: View<'_>) -> Option<Mask> {
@@ -519,38 +448,9 @@ impl MasterOracle {
         self.setup.allowed.has(number)
     }
 
-    /// The configuration that needs the fewest tolerances.
-    fn best(&self) -> Option<&MasterConfig> {
-        self.configs.iter().min_by_key(|config| config.used.len())
-    }
-
-    /// Transitions the DUT took, T1..T14, over the whole case.
-    pub fn taken(&self) -> [u64; TRANSITIONS] {
-        let mut taken = self.taken_before;
-        if let Some(best) = self.best() {
-            taken.iter_mut().zip(best.taken).for_each(|(sum, count)| *sum += u64::from(count));
-        }
-        taken
-    }
-
-    /// Tolerances the DUT made use of, over the whole case.
-    pub fn used(&self) -> Mask {
-        self.used_before.union(self.best().map_or(Mask::NONE, |config| config.used))
-    }
-
-    /// Transitions of the latest exchange.
-    pub fn via(&self) -> impl Iterator<Item = T> + '_ {
-        self.best().into_iter().flat_map(|config| config.via.iter().flat_map(|path| path.iter()))
-    }
-
-    /// Whether the SCL of the DUT may still be on its way to its first SPDU.
-    pub fn may_be_starting(&self) -> bool {
-        self.configs.iter().any(|config| config.machine.master.state() == State(0))
-    }
-
-    /// The state the DUT is in as far as it can be told; `None` when no SCL runs.
-    pub fn state(&self) -> Option<State> {
-        self.best().map(|config| config.machine.master.state())
+    /// What is followed.
+    pub const fn set(&self) -> &Set<Port, Spdu> {
+        &self.set
     }
 }
 

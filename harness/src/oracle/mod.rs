@@ -11,6 +11,7 @@ mod explain_device;
 mod explain_master;
 mod master;
 mod ossde;
+mod set;
 mod setup;
 mod tolerance;
 
@@ -95,8 +96,8 @@ impl Oracle {
     /// How often each transition was taken, over the whole case.
     pub fn taken(&self) -> Vec<(u8, u64)> {
         let (first, taken) = match self {
-            Oracle::Device(oracle) => (20, oracle.taken()),
-            Oracle::Master(oracle) => (1, oracle.taken()),
+            Oracle::Device(oracle) => (20, oracle.set().taken()),
+            Oracle::Master(oracle) => (1, oracle.set().taken()),
         };
         (first..).zip(taken).filter(|(_, count)| *count > 0).collect()
     }
@@ -104,8 +105,8 @@ impl Oracle {
     /// Tolerances the DUT made use of, over the whole case.
     pub fn used(&self) -> Mask {
         match self {
-            Oracle::Device(oracle) => oracle.used(),
-            Oracle::Master(oracle) => oracle.used(),
+            Oracle::Device(oracle) => oracle.set().used(),
+            Oracle::Master(oracle) => oracle.set().used(),
         }
     }
 
@@ -113,8 +114,8 @@ impl Oracle {
     pub fn via(&self) -> [u8; 8] {
         let mut taken = [0; 8];
         match self {
-            Oracle::Device(oracle) => taken.iter_mut().zip(oracle.via()).for_each(|(slot, t)| *slot = t.0),
-            Oracle::Master(oracle) => taken.iter_mut().zip(oracle.via()).for_each(|(slot, t)| *slot = t.0),
+            Oracle::Device(oracle) => taken.iter_mut().zip(oracle.set().via()).for_each(|(slot, t)| *slot = t.0),
+            Oracle::Master(oracle) => taken.iter_mut().zip(oracle.set().via()).for_each(|(slot, t)| *slot = t.0),
         }
         taken
     }
@@ -122,16 +123,16 @@ impl Oracle {
     /// Whether the SCL of the DUT may still be on its way to its first SPDU, or to state 21.
     pub fn may_be_starting(&self) -> bool {
         match self {
-            Oracle::Device(oracle) => oracle.may_be_starting(),
-            Oracle::Master(oracle) => oracle.may_be_starting(),
+            Oracle::Device(oracle) => oracle.set().may_be_starting(),
+            Oracle::Master(oracle) => oracle.set().may_be_starting(),
         }
     }
 
     /// The state the DUT is in as far as it can be told; `None` when no SCL runs.
     pub fn state(&self) -> Option<State> {
         match self {
-            Oracle::Device(oracle) => oracle.state(),
-            Oracle::Master(oracle) => oracle.state(),
+            Oracle::Device(oracle) => oracle.set().state(),
+            Oracle::Master(oracle) => oracle.set().state(),
         }
     }
 }

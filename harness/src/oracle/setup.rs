@@ -1,6 +1,7 @@
 //! What the oracle is told: bench and product beforehand, the application services with every exchange.
 
 use super::Mask;
+use super::config::Window;
 use fsct_adapters::{Octets, Role, Service};
 use fsct_protocol::crc::Reading;
 use fsct_protocol::spdu::Port;
@@ -66,6 +67,30 @@ impl Setup {
             Role::Device => self.port.number(),
             Role::Master => self.port.inverted(),
         }
+    }
+
+    /// When the watchdog of the DUT expires that was started between these times (A24). MTimer of an FS-Master starts when the
+    /// SPDU is handed over: on the line it may expire up to one MasterCycleTime early.
+    pub const fn watchdog(&self, started_earliest: u64, started_latest: u64) -> Window {
+        let slack = self.tick_ns + self.uncertainty_ns;
+        let early = match self.role {
+            Role::Device => slack,
+            Role::Master => slack + self.cycle_ns,
+        };
+        Window {
+            earliest: (started_earliest + self.watchdog_ns).saturating_sub(early),
+            latest: started_latest + self.watchdog_ns + slack + self.margin_ns,
+        }
+    }
+
+    /// When it expires again after it expired in this window, seen at `at` and not yet at `last_at`.
+    pub fn watchdog_again(&self, expired: Window, last_at: u64, at: u64) -> Window {
+        let next = self.watchdog(expired.earliest.max(last_at), expired.latest.min(at));
+        if next.latest >= at {
+            return next;
+        }
+        // Several expiries since the last exchange: they look like one, and the next may come any time.
+        Window { earliest: at, latest: self.watchdog(at, at).latest }
     }
 }
 
