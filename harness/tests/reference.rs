@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{library, run, run_with, story};
+use common::{first_failure, library, not_passed, run, run_with, story};
 use fsct_adapters::Dut;
 use fsct_harness::plan::Selection;
 use fsct_reference::{ConstantDevice, EchoDevice, FsDevice, Mutant, NullDevice, Options};
@@ -11,10 +11,6 @@ use rstest::rstest;
 
 fn reference(options: Options) -> Box<dyn Dut> {
     Box::new(FsDevice::new(options))
-}
-
-fn not_passed(cases: Vec<CaseRecord>) -> Vec<CaseRecord> {
-    cases.into_iter().filter(|case| case.verdict != Verdict::Pass).collect()
 }
 
 #[test]
@@ -73,18 +69,7 @@ fn a_failure_tells_what_the_matter_is() {
         .map(|mutant| {
             let make = || reference(Options { mutant: Some(mutant), ..Options::default() });
             let cases = run(&library, &Selection::default(), make);
-            let failed = cases.iter().find(|case| case.verdict == Verdict::Fail).expect("it fails");
-            let reason = failed.reasons.first().expect("with a reason");
-            format!(
-                "{}\n  {} step {} [{}]\n  clause {}\n  expected {}\n  observed {}",
-                mutant.name(),
-                failed.key,
-                reason.step,
-                reason.kind,
-                reason.clause,
-                reason.expected,
-                reason.observed
-            )
+            first_failure(mutant.name(), &cases)
         })
         .collect();
     insta::assert_snapshot!(told.join("\n"));

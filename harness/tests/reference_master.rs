@@ -2,12 +2,14 @@
 
 mod common;
 
-use common::{library, run_with, story};
+use common::{first_failure, library, not_passed, run, run_with, story};
 use fsct_adapters::Dut;
 use fsct_harness::ledger::Class;
 use fsct_harness::library::Library;
 use fsct_harness::plan::Selection;
-use fsct_reference::{ConstantMaster, EchoMaster, FsMaster, MasterMutant, MasterOptions, NullMaster};
+use fsct_reference::{
+    ConstantMaster, EchoMaster, FsDevice, FsMaster, MasterMutant, MasterOptions, NullMaster, Options,
+};
 use fsct_reports::record::{CaseRecord, Verdict};
 use rstest::rstest;
 
@@ -17,10 +19,6 @@ fn reference(options: MasterOptions) -> Box<dyn Dut> {
 
 fn judged(library: &Library, profile: &str, options: MasterOptions) -> Vec<CaseRecord> {
     run_with(library, &Selection::default(), profile, || reference(options))
-}
-
-fn not_passed(cases: Vec<CaseRecord>) -> Vec<CaseRecord> {
-    cases.into_iter().filter(|case| case.verdict != Verdict::Pass).collect()
 }
 
 #[test]
@@ -98,18 +96,7 @@ fn a_failure_of_a_master_tells_what_the_matter_is() {
         .map(|mutant| {
             let options = MasterOptions { mutant: Some(mutant), ..MasterOptions::default() };
             let cases = judged(&library, "reference-master", options);
-            let failed = cases.iter().find(|case| case.verdict == Verdict::Fail).expect("it fails");
-            let reason = failed.reasons.first().expect("with a reason");
-            format!(
-                "{}\n  {} step {} [{}]\n  clause {}\n  expected {}\n  observed {}",
-                mutant.name(),
-                failed.key,
-                reason.step,
-                reason.kind,
-                reason.clause,
-                reason.expected,
-                reason.observed
-            )
+            first_failure(mutant.name(), &cases)
         })
         .collect();
     insta::assert_snapshot!(told.join("\n"));
@@ -129,9 +116,15 @@ fn a_dead_master_passes_no_case(#[case] make: fn() -> Box<dyn Dut>) {
 #[test]
 fn nothing_of_a_master_is_applicable_to_a_device_and_the_other_way_round() {
     let library = library();
-    let selection = Selection { suites: vec!["scl-device".into()], ..Selection::default() };
-    let cases = run_with(&library, &selection, "reference-master", || reference(MasterOptions::default()));
+    let named = |suite: &str| Selection { suites: vec![suite.into()], ..Selection::default() };
+    let master = || reference(MasterOptions::default());
+    let device = || Box::new(FsDevice::new(Options::default())) as Box<dyn Dut>;
+    let cases = run_with(&library, &named("scl-device"), "reference-master", master);
     assert!(cases.is_empty(), "{}", story(&cases));
+    let cases = run(&library, &named("scl-master"), device);
+    assert!(cases.is_empty(), "{}", story(&cases));
+    assert!(!run_with(&library, &named("scl-master"), "reference-master", master).is_empty());
+    assert!(!run(&library, &named("scl-device"), device).is_empty());
 }
 
 #[test]

@@ -44,9 +44,7 @@ impl Dut for EchoDevice {
     fn apply(&mut self, stimuli: &[Stimulus], observed: &mut Vec<Observation>) -> Result<(), DutError> {
         self.shell.apply(stimuli, observed, |received, variant| {
             self.received = received.copied().unwrap_or(self.received);
-            let mut octets = [0; Octets::MAX];
-            octets.iter_mut().zip(self.received.as_slice()).for_each(|(to, from)| *to = *from);
-            octets.get(..image_octets(variant)).and_then(Octets::new).unwrap_or_default()
+            resized(&self.received, image_octets(variant))
         });
         Ok(())
     }
@@ -65,6 +63,13 @@ impl Dut for ConstantDevice {
         });
         Ok(())
     }
+}
+
+/// The octets cut or filled up with zeros to this length; none when it is longer than octets can be.
+pub(crate) fn resized(octets: &Octets, length: usize) -> Octets {
+    let mut all = [0; Octets::MAX];
+    all.iter_mut().zip(octets.as_slice()).for_each(|(to, from)| *to = *from);
+    all.get(..length).and_then(Octets::new).unwrap_or_default()
 }
 
 fn image_octets(variant: Variant) -> usize {

@@ -4,6 +4,7 @@
 //! configured as, and differ in the image they present. Made-up stimuli are answered unsupported.
 
 use super::{describe, image_octets};
+use crate::dead::resized;
 use crate::device::{DEFAULT_VARIANT, Sink, offers};
 use fsct_adapters::{
     Clock, ClockKind, Description, Dut, DutError, Line, Mode, Observation, Octets, Seen, Service, SmiResult,
@@ -48,9 +49,7 @@ impl Dut for EchoMaster {
     fn apply(&mut self, stimuli: &[Stimulus], observed: &mut Vec<Observation>) -> Result<(), DutError> {
         self.shell.apply(stimuli, observed, |_, received, variant| {
             self.received = received.copied().unwrap_or(self.received);
-            let mut octets = [0; Octets::MAX];
-            octets.iter_mut().zip(self.received.as_slice()).for_each(|(to, from)| *to = *from);
-            octets.get(..image_octets(variant).as_slice().len()).and_then(Octets::new).unwrap_or_default()
+            resized(&self.received, image_octets(variant).as_slice().len())
         });
         Ok(())
     }
