@@ -162,7 +162,8 @@ fn excluded(library: &Library, profile: &Profile, description: &Description, pla
 pub fn unreached(role: Role) -> Description {
     Description {
         role,
-        ports: 1,
+        // No case needs more than this.
+        ports: if role == Role::Master { 2 } else { 1 },
         pcos: Pco::ALL.to_vec(),
         offers: crate::library::EVERYTHING.to_vec(),
         clock: fsct_adapters::Clock { kind: fsct_adapters::ClockKind::Virtual, resolution_ns: 1, uncertainty_ns: 0 },

@@ -294,15 +294,28 @@ fn another_process_gets_the_same_verdicts(#[case] role: &str) {
     assert!(verdicts(&own).len() > 1_000);
 }
 
-#[test]
-fn without_a_dut_both_references_are_judged() {
-    let folder = Folder::new("both");
-    let run = fsct(&["run", "--filter", "T25", "--filter", "covers:T25", "--out", &folder.out()]);
+#[rstest]
+#[case::both(&["--filter", "req:R-11.2-04"], &["device", "master"])]
+#[case::device(&["scl-device", "--filter", "FSD-0001"], &["device"])]
+#[case::master(&["--filter", "FSM-0201"], &["master"])]
+fn without_a_dut_the_references_are_judged_that_a_chosen_case_is_for(#[case] chosen: &[&str], #[case] roles: &[&str]) {
+    let folder = Folder::new(&format!("references-{}", roles.concat()));
+    let out = folder.out();
+    let run = fsct(&[&["run", "--out", &out], chosen].concat());
     assert_eq!(run.code, 0, "{run:?}");
     let summary: serde_json::Value = serde_json::from_str(&folder.text("summary.json")).expect("JSON");
-    let roles: Vec<&str> =
+    let judged: Vec<&str> =
         summary["dut"].as_array().expect("a list").iter().filter_map(|dut| dut["role"].as_str()).collect();
-    assert_eq!(roles, ["device", "master"]);
+    assert_eq!(judged, roles);
+    assert_eq!(summary["transitions"].get("T20").is_some(), roles.contains(&"device"));
+}
+
+#[test]
+fn the_list_holds_the_cases_of_both_roles() {
+    let all = fsct(&["list"]).out;
+    assert!(all.contains("FSD-0001") && all.contains("FSM-0201"), "{all}");
+    let one = fsct(&["list", "--filter", "suite:scl-master"]).out;
+    assert!(!one.contains("FSD-") && one.contains("FSM-0201"), "{one}");
 }
 
 #[test]

@@ -1,12 +1,14 @@
 //! The embedded reference FS-Device conforms, at every answer latency; its mutants and dead devices do not.
 
 mod common;
+mod references;
 
-use common::{first_failure, library, not_passed, run, run_with, story};
+use common::{library, run, run_with, story};
 use fsct_adapters::Dut;
 use fsct_harness::plan::Selection;
 use fsct_reference::{ConstantDevice, EchoDevice, FsDevice, Mutant, NullDevice, Options};
 use fsct_reports::record::{CaseRecord, Verdict};
+use references::{first_failure, not_passed};
 use rstest::rstest;
 
 fn reference(options: Options) -> Box<dyn Dut> {

@@ -1,8 +1,9 @@
 //! The embedded reference FS-Master conforms, at every latency; its mutants and dead masters do not.
 
 mod common;
+mod references;
 
-use common::{first_failure, library, not_passed, run, run_with, story};
+use common::{library, run, run_with, story};
 use fsct_adapters::Dut;
 use fsct_harness::ledger::Class;
 use fsct_harness::library::Library;
@@ -11,6 +12,7 @@ use fsct_reference::{
     ConstantMaster, EchoMaster, FsDevice, FsMaster, MasterMutant, MasterOptions, NullMaster, Options,
 };
 use fsct_reports::record::{CaseRecord, Verdict};
+use references::{first_failure, not_passed};
 use rstest::rstest;
 
 fn reference(options: MasterOptions) -> Box<dyn Dut> {

@@ -1,5 +1,6 @@
 //! `fsct list`: the cases there are.
 
+use super::run::default_profile;
 use super::{Cases, print, show};
 use crate::library::EVERYTHING;
 use crate::plan::{Selection, plan, unreached};
@@ -24,24 +25,27 @@ pub fn run(args: &Args) -> u8 {
         Ok(library) => library,
         Err(code) => return code,
     };
-    let Some(profile) = library.profiles.values().find(|profile| profile.role == Role::Device) else {
-        return super::fail(super::USAGE, "the cases come without a profile");
-    };
     let selection = Selection { filter: args.filter.clone(), ..Selection::default() };
-    let plan = match plan(&library, &selection, profile, &unreached(Role::Device)) {
-        Ok(plan) => plan,
-        Err(problem) => return show(&[problem]),
-    };
+    let mut planned = Vec::new();
+    for role in [Role::Device, Role::Master] {
+        let Some(profile) = library.profiles.get(&default_profile(role)) else {
+            return super::fail(super::USAGE, format!("the cases come without a profile for a {role}"));
+        };
+        match plan(&library, &selection, profile, &unreached(role)) {
+            Ok(plan) => planned.extend(plan.cases),
+            Err(problem) => return show(&[problem]),
+        }
+    }
     if args.expanded {
-        plan.cases.iter().for_each(|planned| print(format!("{}  {}", planned.key, planned.case.title)));
+        planned.iter().for_each(|one| print(format!("{}  {}", one.key, one.case.title)));
     } else {
         for case in library.cases() {
-            let selected = plan.cases.iter().filter(|planned| planned.case.id == case.id).count();
+            let selected = planned.iter().filter(|one| one.case.id == case.id).count();
             if selected > 0 {
                 let points = case.expand(&EVERYTHING).map_or(0, |all| all.points.len());
                 print(format!("{}  {points:>4} x  {:<20} {}", case.id, case.suite, case.title));
             }
         }
     }
-    if plan.cases.is_empty() { super::fail(super::NOTHING_RAN, "no case matches") } else { 0 }
+    if planned.is_empty() { super::fail(super::NOTHING_RAN, "no case matches") } else { 0 }
 }

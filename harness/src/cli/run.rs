@@ -152,10 +152,16 @@ fn execute(args: &Args) -> Result<u8, u8> {
         );
         return Err(fail(USAGE, said));
     }
-    let plans: Vec<Plan<'_>> = candidates
-        .iter()
-        .map(|one| plan(&library, &selection, one.profile, &one.description).map_err(|problem| show(&[problem])))
-        .collect::<Result<_, _>>()?;
+    let planned = |one: &Candidate<'_>| {
+        plan(&library, &selection, one.profile, &one.description).map_err(|problem| show(&[problem]))
+    };
+    let mut plans: Vec<Plan<'_>> = candidates.iter().map(planned).collect::<Result<_, _>>()?;
+    if args.dut.is_empty() && plans.iter().any(|plan| !plan.cases.is_empty()) {
+        // Nobody asked for a reference whose role no chosen case is for.
+        let mut has_cases = plans.iter().map(|plan| !plan.cases.is_empty()).collect::<Vec<_>>().into_iter();
+        candidates.retain(|_| has_cases.next().unwrap_or(true));
+        plans.retain(|plan| !plan.cases.is_empty());
+    }
     let in_force = candidates.iter().fold(Mask::NONE, |mask, one| mask.union(one.allowed));
     let header = Header {
         schema: SCHEMA.to_owned(),
@@ -235,7 +241,7 @@ fn candidate<'a>(
 }
 
 /// The profile a DUT is judged by when none is given.
-fn default_profile(role: fsct_adapters::Role) -> String {
+pub(super) fn default_profile(role: fsct_adapters::Role) -> String {
     format!("reference-{role}")
 }
 

@@ -4,7 +4,7 @@ use fsct_adapters::{Dut, DutError};
 use fsct_harness::campaign::{Bench, Run};
 use fsct_harness::library::Library;
 use fsct_harness::plan::{Plan, Selection, plan, unreached};
-use fsct_reports::record::{CaseRecord, Verdict};
+use fsct_reports::record::CaseRecord;
 use std::convert::Infallible;
 use std::sync::atomic::AtomicBool;
 
@@ -66,19 +66,4 @@ pub fn story(cases: &[CaseRecord]) -> String {
         }
     }
     text
-}
-
-/// The cases with any other verdict than pass.
-pub fn not_passed(cases: Vec<CaseRecord>) -> Vec<CaseRecord> {
-    cases.into_iter().filter(|case| case.verdict != Verdict::Pass).collect()
-}
-
-/// The first case that failed and its first reason, for a snapshot.
-pub fn first_failure(mutant: &str, cases: &[CaseRecord]) -> String {
-    let failed = cases.iter().find(|case| case.verdict == Verdict::Fail).expect("it fails");
-    let reason = failed.reasons.first().expect("with a reason");
-    format!(
-        "{mutant}\n  {} step {} [{}]\n  clause {}\n  expected {}\n  observed {}",
-        failed.key, reason.step, reason.kind, reason.clause, reason.expected, reason.observed
-    )
 }
