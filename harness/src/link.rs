@@ -178,6 +178,19 @@ impl Link {
         self.oracle.exchange(at, sent, image, &self.app)
     }
 
+    /// The octets as they go out: behind a bare SPDU the non-safety data of the plugged Device follow as 0, because the length
+    /// of its process data never changes.
+    pub fn whole(&self, octets: Option<Octets>) -> Option<Octets> {
+        let (Some(spdu), Some(Some(device))) = (octets, &self.plugged) else { return octets };
+        let setup = self.oracle.setup();
+        let missing = usize::from(device.pd_in).saturating_sub(spdu.as_slice().len());
+        if spdu.as_slice().len() != setup.mode.spdu_octets(setup.sent_pd()) || missing == 0 {
+            return octets;
+        }
+        let zeros = vec![0; missing];
+        Octets::new(&[spdu.as_slice(), &zeros].concat())
+    }
+
     /// Something of the base system.
     pub fn base(&mut self, at: u64, seen: &Seen) {
         match seen {

@@ -226,7 +226,9 @@ impl<'d> Session<'d> {
     fn keep(&mut self, stimuli: &mut Vec<Stimulus>) {
         if self.kept() {
             let others = (0..).zip(&self.links).filter(|(index, link)| *index != self.current && link.is_kept());
-            stimuli.extend(others.map(|(_, link)| Stimulus::Exchange { port: link.port, octets: link.kept_octets() }));
+            stimuli.extend(
+                others.map(|(_, link)| Stimulus::Exchange { port: link.port, octets: link.whole(link.kept_octets()) }),
+            );
         }
     }
 
@@ -252,7 +254,7 @@ impl<'d> Session<'d> {
     /// # Errors
     /// [`Stop`] when the case cannot go on.
     pub fn exchange_after(&mut self, ns: u64, octets: Option<Octets>) -> Result<(), Stop> {
-        let exchange = Stimulus::Exchange { port: self.link().port, octets };
+        let exchange = Stimulus::Exchange { port: self.link().port, octets: self.link().whole(octets) };
         let paced = self.wait_for_turn(ns);
         if paced {
             self.planned = self.planned.map(|(last, _)| (last, ns));
@@ -284,12 +286,13 @@ impl<'d> Session<'d> {
                 continue;
             }
             let mut batch = Vec::with_capacity(2 * BATCH);
+            let (port, octets) = (self.link().port, self.link().whole(octets));
             let mut at = self.now;
             while at < until && batch.len() < 2 * BATCH {
                 let ns = cycle.min(until - at);
                 at += ns;
                 batch.push(Stimulus::Advance { ns });
-                batch.push(Stimulus::Exchange { port: self.link().port, octets });
+                batch.push(Stimulus::Exchange { port, octets });
             }
             self.apply(&batch)?;
         }

@@ -69,9 +69,9 @@ impl PortUnit {
             return None;
         }
         let (spdu_in, _) = self.config.as_ref()?.spdu();
-        // Less than the SPDU, or more than the process data, is no message. Non-safety octets that are missing stay as they were.
-        let lengths = usize::from(spdu_in)..=usize::from(spdu_in) + self.nsr_in.len();
-        if let Some(octets) = received.map(Octets::as_slice).filter(|octets| lengths.contains(&octets.len())) {
+        // Process data of another length than configured are no message.
+        let length = usize::from(spdu_in) + self.nsr_in.len();
+        if let Some(octets) = received.map(Octets::as_slice).filter(|octets| octets.len() == length) {
             let (safety, other) = octets.split_at_checked(spdu_in.into())?;
             self.fs_in = safety.to_vec();
             self.nsr_in.iter_mut().zip(other).for_each(|(octet, new)| *octet = *new);
