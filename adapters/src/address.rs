@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `inproc:NAME[?key=value&..]` | a DUT inside this program |
 //! | `exec:PROGRAM ARGS..` | a child process on its standard input and output |
+//! | `lib:PATH[?timeout=500ms]` | a shared library, in a child process |
 //! | `tcp://HOST:PORT[?timeout=500ms]` | a socket |
 //! | `unix:PATH[?timeout=500ms]` | a local socket |
 
@@ -29,6 +30,13 @@ pub enum Address {
         /// Its arguments.
         args: Vec<String>,
     },
+    /// A shared library.
+    Lib {
+        /// Its path, without `?`.
+        path: PathBuf,
+        /// Time-out of each answer.
+        timeout: Option<Duration>,
+    },
     /// A TCP socket.
     Tcp {
         /// Name or number of the host, without the brackets of an IPv6 address.
@@ -51,7 +59,9 @@ pub enum Address {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AddressError {
     /// It begins with no known scheme.
-    #[error("{given:?} begins with no way to reach a DUT (inproc:, exec:, tcp:// or unix:), did you mean {nearest}?")]
+    #[error(
+        "{given:?} begins with no way to reach a DUT (inproc:, lib:, exec:, tcp:// or unix:), did you mean {nearest}?"
+    )]
     UnknownScheme {
         /// The address.
         given: String,
@@ -59,7 +69,7 @@ pub enum AddressError {
         nearest: &'static str,
     },
     /// A scheme that is known and not served.
-    #[error("{scheme} is not in this version; the ways to reach a DUT are inproc:, exec:, tcp:// and unix:")]
+    #[error("{scheme} is not in this version; the ways to reach a DUT are inproc:, lib:, exec:, tcp:// and unix:")]
     NotInThisVersion {
         /// The scheme.
         scheme: &'static str,
@@ -101,7 +111,7 @@ pub enum AddressError {
 }
 
 const MAX_TIMEOUT_S: u64 = 3600;
-const SCHEMES: [&str; 6] = ["inproc:", "exec:", "tcp://", "unix:", "lib:", "serial:"];
+const SCHEMES: [&str; 6] = ["inproc:", "lib:", "exec:", "tcp://", "unix:", "serial:"];
 
 impl FromStr for Address {
     type Err = AddressError;
@@ -143,11 +153,18 @@ impl FromStr for Address {
                 }
                 Ok(Address::Unix { path: PathBuf::from(path), timeout: timeout(query)? })
             }
+            Some(("lib:", rest)) => {
+                let (path, query) = split_query(rest)?;
+                if path.is_empty() {
+                    return Err(missing("a path"));
+                }
+                Ok(Address::Lib { path: PathBuf::from(path), timeout: timeout(query)? })
+            }
             Some((scheme, _)) => Err(AddressError::NotInThisVersion { scheme }),
             None => {
                 let begin = text.split_inclusive("//").next().unwrap_or_default();
                 let begin = begin.split_inclusive(':').next().filter(|_| !begin.ends_with("//")).unwrap_or(begin);
-                let served = SCHEMES.into_iter().take(4);
+                let served = SCHEMES.into_iter().take(5);
                 let nearest = served.min_by_key(|scheme| strsim::damerau_levenshtein(begin, scheme));
                 Err(AddressError::UnknownScheme { given: text.to_owned(), nearest: nearest.unwrap_or_default() })
             }
@@ -166,6 +183,10 @@ impl fmt::Display for Address {
             Address::Exec { program, args } => {
                 write!(f, "exec:{}", quoted(program))?;
                 args.iter().try_for_each(|arg| write!(f, " {}", quoted(arg)))
+            }
+            Address::Lib { path, timeout } => {
+                write!(f, "lib:{}", path.display())?;
+                write_timeout(f, *timeout)
             }
             Address::Tcp { host, port, timeout } => {
                 if host.contains(':') {

@@ -17,7 +17,8 @@ pub const CONNECT_TIMEOUT: Duration = Duration::from_secs(2);
 /// [`REPLY_TIMEOUT`].
 ///
 /// # Errors
-/// [`DutError::Unreachable`]; always so for `inproc:`, which the harness itself resolves.
+/// [`DutError::Unreachable`]; always so for `inproc:`, which the harness itself resolves, and for `lib:`, which it makes a
+/// process for.
 pub fn connect(address: &Address) -> Result<Box<dyn Dut>, DutError> {
     connect_within(address, REPLY_TIMEOUT)
 }
@@ -30,6 +31,7 @@ pub fn connect_within(address: &Address, reply: Duration) -> Result<Box<dyn Dut>
     let unreachable = |error: io::Error| DutError::Unreachable { url: address.to_string(), why: error.to_string() };
     match address {
         Address::Inproc { .. } => Err(unreachable(io::Error::other("it is inside a program and has no connection"))),
+        Address::Lib { .. } => Err(unreachable(io::Error::other("it takes a process made for it, as fsct does"))),
         Address::Exec { program, args } => {
             let (reader, writer, process) = Process::start(program, args).map_err(unreachable)?;
             Ok(Box::new(StreamDut::new(reader, writer, Box::new(process), reply)))

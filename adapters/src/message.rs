@@ -12,6 +12,11 @@ pub use description::{Described, Limits, pack_description, unpack_description};
 pub use observation::{pack_observed, unpack_observed};
 pub use stimulus::{pack_apply, unpack_apply};
 
+pub(crate) use description::edition_number;
+pub(crate) use observation::unpack_seen;
+pub(crate) use port::response_number;
+pub(crate) use stimulus::kind;
+
 /// The version of the messages this program speaks. Frames, [`HELLO`] and the first octet of [`DESCRIPTION`] are the
 /// same in every version.
 pub const VERSION: u8 = 1;
@@ -134,7 +139,7 @@ fn cut(text: &str) -> &str {
 }
 
 /// Appends a TLV. A value that is too long is cut; who may have such a value looks at the length afterwards.
-fn put(out: &mut Vec<u8>, kind: u8, parts: &[&[u8]]) {
+pub(crate) fn put(out: &mut Vec<u8>, kind: u8, parts: &[&[u8]]) {
     let length = parts.iter().map(|part| part.len()).sum::<usize>().min(usize::from(u16::MAX));
     let [high, low] = (length as u16).to_be_bytes();
     out.extend([kind, high, low]);

@@ -4,7 +4,7 @@ use crate::frame::{self, Decoder, Frame};
 use crate::listener::{Listener, Place, Shared};
 use crate::message::{self, Hello, Limits, MAX_TEXT};
 use crate::socket::Socket;
-use crate::{Dut, Observation};
+use crate::{Dut, DutError, Observation};
 use std::io::{self, ErrorKind, Read, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::thread;
@@ -162,7 +162,7 @@ impl Conversation {
         let asked = Hello::unpack(&frame.payload).map_err(|error| error.to_string())?;
         self.greeted = asked.covers(message::VERSION);
         let payload = if self.greeted {
-            message::pack_description(&self.dut.hello().map_err(|error| error.to_string())?, LIMITS)
+            message::pack_description(&self.dut.hello().map_err(said)?, LIMITS)
         } else {
             vec![message::VERSION]
         };
@@ -177,7 +177,7 @@ impl Conversation {
         let stimuli = message::unpack_apply(&frame.payload).map_err(|error| error.to_string())?;
         let mut observed = std::mem::take(&mut self.observed);
         observed.clear();
-        let outcome = self.dut.apply(&stimuli, &mut observed).map_err(|error| error.to_string());
+        let outcome = self.dut.apply(&stimuli, &mut observed).map_err(said);
         let answered = outcome.and_then(|()| self.observed(frame.sequence, &observed));
         self.observed = observed;
         answered
@@ -197,6 +197,14 @@ impl Conversation {
                 return Ok(());
             }
         }
+    }
+}
+
+/// An error in the words of the DUT: whoever reads them adds again that it broke the contract.
+fn said(error: DutError) -> String {
+    match error {
+        DutError::Contract { what } => what,
+        error => error.to_string(),
     }
 }
 

@@ -20,6 +20,10 @@ fn exec(program: &str, args: &[&str]) -> Address {
     Address::Exec { program: program.to_owned(), args: args.iter().map(|arg| arg.to_string()).collect() }
 }
 
+fn lib(path: &str, timeout: Option<u64>) -> Address {
+    Address::Lib { path: PathBuf::from(path), timeout: timeout.map(Duration::from_millis) }
+}
+
 fn unix(path: &str, timeout: Option<u64>) -> Address {
     Address::Unix { path: PathBuf::from(path), timeout: timeout.map(Duration::from_millis) }
 }
@@ -33,6 +37,7 @@ fn unix(path: &str, timeout: Option<u64>) -> Address {
 #[case("tcp://localhost:5061", tcp("localhost", 5061, None))]
 #[case("tcp://[::1]:0?timeout=500ms", tcp("::1", 0, Some(500)))]
 #[case("tcp://h:1?timeout=2s", tcp("h", 1, Some(2000)))]
+#[case("lib:./libvendor.so?timeout=3s", lib("./libvendor.so", Some(3000)))]
 #[case("unix:/run/dut.sock", unix("/run/dut.sock", None))]
 #[case("unix:dut.sock?timeout=1ms", unix("dut.sock", Some(1)))]
 fn addresses(#[case] text: &str, #[case] address: Address) {
@@ -41,30 +46,27 @@ fn addresses(#[case] text: &str, #[case] address: Address) {
 }
 
 #[rstest]
-#[case("", r#""" begins with no way to reach a DUT (inproc:, exec:, tcp:// or unix:), did you mean exec:?"#)]
+#[case("", r#""" begins with no way to reach a DUT (inproc:, lib:, exec:, tcp:// or unix:), did you mean lib:?"#)]
 #[case(
     "tpc://h:1",
-    r#""tpc://h:1" begins with no way to reach a DUT (inproc:, exec:, tcp:// or unix:), did you mean tcp://?"#
+    r#""tpc://h:1" begins with no way to reach a DUT (inproc:, lib:, exec:, tcp:// or unix:), did you mean tcp://?"#
 )]
 #[case(
     "tcp:h:1",
-    r#""tcp:h:1" begins with no way to reach a DUT (inproc:, exec:, tcp:// or unix:), did you mean tcp://?"#
+    r#""tcp:h:1" begins with no way to reach a DUT (inproc:, lib:, exec:, tcp:// or unix:), did you mean tcp://?"#
 )]
 #[case(
     "inprog:x",
-    r#""inprog:x" begins with no way to reach a DUT (inproc:, exec:, tcp:// or unix:), did you mean inproc:?"#
+    r#""inprog:x" begins with no way to reach a DUT (inproc:, lib:, exec:, tcp:// or unix:), did you mean inproc:?"#
 )]
 #[case(
     "unix//x\n",
-    r#""unix//x\n" begins with no way to reach a DUT (inproc:, exec:, tcp:// or unix:), did you mean unix:?"#
+    r#""unix//x\n" begins with no way to reach a DUT (inproc:, lib:, exec:, tcp:// or unix:), did you mean unix:?"#
 )]
-#[case(
-    "lib:./libvendor.so",
-    "lib: is not in this version; the ways to reach a DUT are inproc:, exec:, tcp:// and unix:"
-)]
+#[case("lib:?timeout=1s", r#""lib:?timeout=1s" lacks a path"#)]
 #[case(
     "serial:/dev/ttyACM0",
-    "serial: is not in this version; the ways to reach a DUT are inproc:, exec:, tcp:// and unix:"
+    "serial: is not in this version; the ways to reach a DUT are inproc:, lib:, exec:, tcp:// and unix:"
 )]
 #[case("inproc:?a=b", r#""inproc:?a=b" lacks the name of a DUT"#)]
 #[case("exec: ", r#""exec: " lacks a program"#)]

@@ -106,7 +106,7 @@ fn a_dut_that_panics_or_fails_ends_its_own_connection_only() {
     assert_eq!(panicking.apply(&write(b"panic"), &mut Vec::new()), Err(closed));
     let mut failing = connect(&server.address).unwrap();
     failing.hello().unwrap();
-    let what = r#"it reported "the DUT broke the contract: the DUT fails on demand""#.to_owned();
+    let what = r#"it reported "the DUT fails on demand""#.to_owned();
     assert_eq!(failing.apply(&write(b"fail"), &mut Vec::new()), Err(DutError::Contract { what }));
     assert_eq!(apply(&mut other, &[exchange(&[2])]).len(), 1);
 }

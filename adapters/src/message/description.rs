@@ -39,7 +39,7 @@ pub enum Described {
 }
 
 /// The number of an edition on the wire.
-pub(super) const fn edition_number(edition: Edition) -> u8 {
+pub(crate) const fn edition_number(edition: Edition) -> u8 {
     match edition {
         Edition::V1_1 => 1,
         Edition::Iec2022 => 2,

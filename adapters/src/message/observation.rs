@@ -59,7 +59,7 @@ pub fn unpack_observed(payload: &[u8], observations: &mut Vec<Observation>) -> R
         let stimulus = u16::from_be_bytes(cursor.array("the stimulus of an observation")?);
         let at = u64::from_be_bytes(cursor.array("the time of an observation")?);
         let (kind, value) = cursor.tlv("an observation")?;
-        observations.push(Observation { stimulus, at, seen: seen(kind, value)? });
+        observations.push(Observation { stimulus, at, seen: unpack_seen(kind, value)? });
     }
     Ok(flags & MORE != 0)
 }
@@ -93,7 +93,8 @@ fn put_seen(out: &mut Vec<u8>, seen: &Seen) {
     }
 }
 
-fn seen(kind: u8, value: &[u8]) -> Result<Seen, Malformed> {
+/// The observation of this kind with this value.
+pub(crate) fn unpack_seen(kind: u8, value: &[u8]) -> Result<Seen, Malformed> {
     let length = |field| Malformed::Length { field, found: value.len() };
     let octets = |octets, field| Octets::new(octets).ok_or(length(field));
     match (kind, value) {

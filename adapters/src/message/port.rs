@@ -28,13 +28,24 @@ pub(super) fn unpack_identity(octets: &[u8]) -> Option<Identity> {
     })
 }
 
-/// Kind, then the value or the ErrorType.
-pub(super) fn pack_response(response: &Response) -> Vec<u8> {
+/// The number of an answer.
+pub(crate) const fn response_number(response: &Response) -> u8 {
     match response {
-        Response::Value(value) => [&[VALUE], value.as_slice()].concat(),
-        Response::Written => vec![WRITTEN],
-        Response::Refused(error) => [&[REFUSED], error.to_be_bytes().as_slice()].concat(),
+        Response::Value(_) => VALUE,
+        Response::Written => WRITTEN,
+        Response::Refused(_) => REFUSED,
     }
+}
+
+/// Number, then the value or the ErrorType.
+pub(super) fn pack_response(response: &Response) -> Vec<u8> {
+    let mut octets = vec![response_number(response)];
+    match response {
+        Response::Value(value) => octets.extend(value),
+        Response::Written => {}
+        Response::Refused(error) => octets.extend(error.to_be_bytes()),
+    }
+    octets
 }
 
 /// The answer in these octets; `None` when they are none.

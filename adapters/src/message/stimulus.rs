@@ -55,29 +55,49 @@ pub fn unpack_apply(payload: &[u8]) -> Result<Vec<Stimulus>, Malformed> {
     if stimuli.len() == announced { Ok(stimuli) } else { Err(Malformed::Count { announced, found: stimuli.len() }) }
 }
 
+/// The number of its kind.
+pub(crate) const fn kind(stimulus: &Stimulus) -> u8 {
+    match stimulus {
+        Stimulus::Configure(_) => CONFIGURE,
+        Stimulus::Power(_) => POWER,
+        Stimulus::Exchange { .. } => EXCHANGE,
+        Stimulus::Read { .. } => READ,
+        Stimulus::Write { .. } => WRITE,
+        Stimulus::Set { .. } => SET,
+        Stimulus::Advance { .. } => ADVANCE,
+        Stimulus::Plug { .. } => PLUG,
+        Stimulus::Respond { .. } => RESPOND,
+        Stimulus::Raise { .. } => RAISE,
+        Stimulus::Drive { .. } => DRIVE,
+        Stimulus::Smi(_) => SMI,
+        Stimulus::Other { kind, .. } => *kind,
+    }
+}
+
 fn put_stimulus(out: &mut Vec<u8>, stimulus: &Stimulus) {
+    let mut put = |value: &[&[u8]]| put(out, kind(stimulus), value);
     match stimulus {
         Stimulus::Configure(Variant { edition, mode, pd_out, pd_in }) => {
-            put(out, CONFIGURE, &[&[edition_number(*edition), mode.code(), *pd_out, *pd_in]]);
+            put(&[&[edition_number(*edition), mode.code(), *pd_out, *pd_in]]);
         }
-        Stimulus::Power(on) => put(out, POWER, &[&[u8::from(*on)]]),
-        Stimulus::Exchange { port, octets: None } => put(out, EXCHANGE, &[&[*port, 0]]),
-        Stimulus::Exchange { port, octets: Some(octets) } => put(out, EXCHANGE, &[&[*port, 1], octets.as_slice()]),
-        Stimulus::Read { index, subindex } => put(out, READ, &[&index.to_be_bytes(), &[*subindex]]),
-        Stimulus::Write { index, subindex, data } => put(out, WRITE, &[&index.to_be_bytes(), &[*subindex], data]),
-        Stimulus::Set { port, service, value } => put(out, SET, &[&[*port, service.number()], value.as_slice()]),
-        Stimulus::Advance { ns } => put(out, ADVANCE, &[&ns.to_be_bytes()]),
-        Stimulus::Plug { port, device: None } => put(out, PLUG, &[&[*port]]),
-        Stimulus::Plug { port, device: Some(identity) } => put(out, PLUG, &[&[*port], &pack_identity(identity)]),
-        Stimulus::Respond { port, response } => put(out, RESPOND, &[&[*port], &pack_response(response)]),
-        Stimulus::Raise { port, code, qualifier } => put(out, RAISE, &[&[*port], &code.to_be_bytes(), &[*qualifier]]),
-        Stimulus::Drive { port, line, level } => put(out, DRIVE, &[&[*port, line.number(), u8::from(*level)]]),
+        Stimulus::Power(on) => put(&[&[u8::from(*on)]]),
+        Stimulus::Exchange { port, octets: None } => put(&[&[*port, 0]]),
+        Stimulus::Exchange { port, octets: Some(octets) } => put(&[&[*port, 1], octets.as_slice()]),
+        Stimulus::Read { index, subindex } => put(&[&index.to_be_bytes(), &[*subindex]]),
+        Stimulus::Write { index, subindex, data } => put(&[&index.to_be_bytes(), &[*subindex], data]),
+        Stimulus::Set { port, service, value } => put(&[&[*port, service.number()], value.as_slice()]),
+        Stimulus::Advance { ns } => put(&[&ns.to_be_bytes()]),
+        Stimulus::Plug { port, device: None } => put(&[&[*port]]),
+        Stimulus::Plug { port, device: Some(identity) } => put(&[&[*port], &pack_identity(identity)]),
+        Stimulus::Respond { port, response } => put(&[&[*port], &pack_response(response)]),
+        Stimulus::Raise { port, code, qualifier } => put(&[&[*port], &code.to_be_bytes(), &[*qualifier]]),
+        Stimulus::Drive { port, line, level } => put(&[&[*port, line.number(), u8::from(*level)]]),
         Stimulus::Smi(request) => {
             let SmiRequest { service, port, client_id, expected, octets } = request.as_ref();
             let head = [service.number(), *port];
-            put(out, SMI, &[&head, &client_id.to_be_bytes(), &expected.to_be_bytes(), octets]);
+            put(&[&head, &client_id.to_be_bytes(), &expected.to_be_bytes(), octets]);
         }
-        Stimulus::Other { kind, octets } => put(out, *kind, &[octets]),
+        Stimulus::Other { octets, .. } => put(&[octets]),
     }
 }
 

@@ -2,11 +2,13 @@
 
 use crate::campaign::Bench;
 use crate::problem::suggestion;
-use fsct_adapters::{Address, Dut, DutError};
+use fsct_adapters::{Address, Dut, DutError, REPLY_TIMEOUT, connect_within};
 use fsct_reference::{
     ConstantDevice, ConstantMaster, EchoDevice, EchoMaster, FsDevice, FsMaster, MasterOptions, NullDevice, NullMaster,
     Options,
 };
+use std::io;
+use std::path::Path;
 
 /// What `inproc:` can reach.
 const IN_PROCESS: [&str; 8] = [
@@ -37,13 +39,35 @@ pub fn parse(text: &str) -> Result<Address, String> {
 /// # Errors
 /// [`DutError`] when the DUT is not reached or fails the preflight.
 pub fn connect(address: &Address) -> Result<Bench, DutError> {
-    let dut = match address {
+    Bench::greet(reach(address)?)
+}
+
+/// A fresh connection on which nothing has been said.
+///
+/// # Errors
+/// [`DutError::Unreachable`].
+pub fn reach(address: &Address) -> Result<Box<dyn Dut>, DutError> {
+    match address {
         Address::Inproc { name, query } => {
-            in_process(name, query).map_err(|why| DutError::Unreachable { url: address.to_string(), why })?
+            in_process(name, query).map_err(|why| DutError::Unreachable { url: address.to_string(), why })
         }
-        address => fsct_adapters::connect(address)?,
-    };
-    Bench::greet(dut)
+        Address::Lib { path, timeout } => {
+            let host =
+                host(path).map_err(|why| DutError::Unreachable { url: address.to_string(), why: why.to_string() })?;
+            connect_within(&host, timeout.unwrap_or(REPLY_TIMEOUT))
+        }
+        address => fsct_adapters::connect(address),
+    }
+}
+
+/// This program once more, to load a library: what the library does to it ends it, and not the run.
+fn host(path: &Path) -> io::Result<Address> {
+    let path = path.canonicalize()?;
+    let text = |path: &Path| path.to_str().map(str::to_owned).ok_or(io::Error::other("the path is no UTF-8"));
+    Ok(Address::Exec {
+        program: text(&std::env::current_exe()?)?,
+        args: vec![super::host::NAME.to_owned(), text(&path)?],
+    })
 }
 
 fn in_process(name: &str, query: &[(String, String)]) -> Result<Box<dyn Dut>, String> {

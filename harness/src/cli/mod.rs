@@ -6,6 +6,7 @@ mod bench;
 mod check;
 mod crc;
 mod explain;
+mod host;
 mod list;
 mod report;
 mod run;
@@ -59,6 +60,9 @@ enum Command {
     Vectors(vectors::Args),
     /// Compute the signature of octets
     Crc(crc::Args),
+    /// Load a library and serve it: what `lib:` starts
+    #[command(name = host::NAME, hide = true)]
+    Host(host::Args),
 }
 
 /// Runs the command of this process.
@@ -77,6 +81,7 @@ pub fn main() -> ExitCode {
         Command::Report(args) => report::run(&args),
         Command::Vectors(args) => vectors::run(&args),
         Command::Crc(args) => crc::run(&args),
+        Command::Host(args) => host::run(&args),
     });
     ExitCode::from(code.unwrap_or(RIG))
 }
