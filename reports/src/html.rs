@@ -50,6 +50,7 @@ pub fn render(run: &Run) -> String {
                     (banner(&summary))
                     (incomplete(run, &summary))
                     (facts(run, &summary))
+                    (differing(run, &summary))
                     (coverage(&summary))
                     (tolerances(run, &summary))
                     (attention(run, &room))
@@ -169,6 +170,33 @@ fn role(role: &str) -> String {
 }
 
 /// The transitions of every machine there is a DUT for, and what else a record may hold.
+/// What several DUTs of one role came to, where that is not the same.
+fn differing(run: &Run, summary: &Summary) -> Markup {
+    let duts = Duts::of(&run.header);
+    let label = |number| duts.label(number).unwrap_or_default();
+    html! {
+        @if let Some(compared) = summary.compared {
+            h2 { "One case, every DUT" }
+            @if summary.differing.is_empty() {
+                p { "Each of the " (compared) " cases came to the same on every DUT of its role." }
+            } @else {
+                p { (summary.differing.len()) " of " (compared) " cases did not come to the same on every DUT of their role." }
+                ul {
+                    @for case in summary.differing.iter().take(LISTED) {
+                        li {
+                            code { (short(&case.key, 2 * NAME)) }
+                            @for (number, outcome) in &case.outcomes { " · " (outcome) " on " (label(*number)) }
+                        }
+                    }
+                }
+                @if summary.differing.len() > LISTED {
+                    p.soft { (summary.differing.len() - LISTED) " more are in summary.json." }
+                }
+            }
+        }
+    }
+}
+
 fn coverage(summary: &Summary) -> Markup {
     let count = |name: &String| summary.transitions.get(name).copied();
     let machines = Machine::ALL.map(|machine| (machine, machine.transitions()));

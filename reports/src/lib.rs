@@ -2,6 +2,7 @@
 
 mod case_html;
 mod chart;
+mod compare;
 pub mod decode;
 mod duts;
 mod html;
@@ -13,6 +14,7 @@ mod story;
 mod summary;
 mod text;
 
+pub use compare::Differing;
 pub use journal::{FILE, Journal, ReadError, Reader, Run, read};
 pub use summary::{Summary, execution_name, verdict_name};
 pub use text::visible;

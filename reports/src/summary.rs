@@ -1,5 +1,6 @@
 //! `summary.json`: the run in a few numbers, and the exit code.
 
+use crate::compare::{Comparison, Differing};
 use crate::decode::Side;
 use crate::journal::{ReadError, Reader, Run};
 use crate::machine::Machine;
@@ -32,28 +33,40 @@ pub struct Summary {
     pub not_applicable: usize,
     /// The run did not come to its end: cut off, interrupted, or with fewer cases than planned or counted at the end.
     pub partial: bool,
+    /// Cases that ran on more than one DUT; `null` when no role has several.
+    pub compared: Option<usize>,
+    /// Those that did not come to the same everywhere.
+    pub differing: Vec<Differing>,
 }
 
 impl Summary {
     /// Sums up a run.
     pub fn of(run: &Run) -> Summary {
         let mut summary = Summary::begin(&run.header);
-        run.cases.iter().for_each(|case| summary.add(case));
-        summary.end(run.footer.as_ref(), run.damaged.is_some());
+        let mut comparison = Comparison::of(&run.header.duts);
+        run.cases.iter().for_each(|case| {
+            summary.add(case);
+            comparison.add(case);
+        });
+        summary.end(run.footer.as_ref(), run.damaged.is_some(), comparison);
         summary
     }
 
-    /// Sums up the journal of a folder, one case at a time: flat in memory however long the run was.
+    /// Sums up the journal of a folder, one case at a time: flat in memory however long the run was, but for the keys where
+    /// several DUTs are compared.
     ///
     /// # Errors
     /// [`ReadError`].
     pub fn read(folder: &Path) -> Result<Summary, ReadError> {
         let mut reader = Reader::open(folder)?;
         let mut summary = Summary::begin(reader.header());
+        let mut comparison = Comparison::of(&reader.header().duts);
         for case in reader.by_ref() {
-            summary.add(&case?);
+            let case = case?;
+            summary.add(&case);
+            comparison.add(&case);
         }
-        summary.end(reader.footer(), reader.damaged().is_some());
+        summary.end(reader.footer(), reader.damaged().is_some(), comparison);
         Ok(summary)
     }
 
@@ -70,6 +83,8 @@ impl Summary {
             planned: header.planned,
             not_applicable: header.not_applicable.len(),
             partial: true,
+            compared: None,
+            differing: Vec::new(),
         }
     }
 
@@ -86,7 +101,11 @@ impl Summary {
         }
     }
 
-    fn end(&mut self, footer: Option<&Footer>, damaged: bool) {
+    fn end(&mut self, footer: Option<&Footer>, damaged: bool, comparison: Comparison) {
+        if let Some((compared, differing)) = comparison.end() {
+            self.compared = Some(compared);
+            self.differing = differing;
+        }
         let complete = footer.is_some_and(|footer| !footer.interrupted && footer.cases == self.cases);
         self.partial = damaged || !complete || self.cases < self.planned;
     }

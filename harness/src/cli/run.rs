@@ -18,6 +18,7 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 /// Failures told on the terminal; the rest is in the reports.
 const TOLD: usize = 10;
@@ -28,8 +29,8 @@ pub struct Args {
     /// Names of suites, or files of cases; none: all suites
     #[arg(value_name = "SUITE")]
     suites: Vec<String>,
-    /// Device under test: inproc:NAME, exec:PROGRAM ARGS, tcp://HOST:PORT or unix:PATH; may be repeated. Without it the
-    /// reference FS-Device and the reference FS-Master are judged
+    /// Device under test: inproc:NAME, lib:PATH, exec:PROGRAM ARGS, tcp://HOST:PORT, unix:PATH or serial:PATH. Repeated, each
+    /// is judged, and where two of one role differ is told. Without it the reference FS-Device and the reference FS-Master
     #[arg(long, value_name = "URL")]
     dut: Vec<String>,
     /// Profile of the product: a name the binary carries, or a file; one for each role. Without it reference-device or
@@ -180,11 +181,13 @@ fn execute(args: &Args) -> Result<u8, u8> {
     }
     let bar = progress(header.planned);
     let mut told = Told { bar: &bar, failures: 0 };
+    let mut taken = Vec::new();
     let written = (|| {
         let mut journal = Journal::create(&args.out)?;
         journal.header(&header)?;
         let mut cases = 0;
         for ((number, one), plan) in (0..).zip(candidates).zip(&plans) {
+            let begin = Instant::now();
             let run = Run {
                 library: &library,
                 profile: one.profile,
@@ -204,12 +207,14 @@ fn execute(args: &Args) -> Result<u8, u8> {
                     journal.case(&case)
                 },
             )?;
+            taken.push((one.url, begin.elapsed()));
         }
         journal.footer(&Footer { cases, interrupted: interrupted.load(Ordering::Relaxed) })
     })();
     bar.finish_and_clear();
     written.map_err(|error| fail(RIG, format!("the record in {} cannot be written: {error}", args.out.display())))?;
     let summary = fsct_reports::render(&args.out).map_err(|error| fail(RIG, error))?;
+    compare(&plans, &taken, &summary);
     conclude(args, &plans, &summary, interrupted.load(Ordering::Relaxed));
     Ok(summary.exit_code())
 }
@@ -363,6 +368,31 @@ impl Told<'_> {
             text += "\n  (further ones are in the reports)";
         }
         self.bar.suspend(|| eprintln!("{}", visible(&text)));
+    }
+}
+
+/// How long each DUT took, and where several of one role did not come to the same.
+fn compare(plans: &[Plan<'_>], taken: &[(&str, Duration)], summary: &Summary) {
+    if taken.len() > 1 {
+        for ((url, time), plan) in taken.iter().zip(plans) {
+            print(format!("{:>5} cases in {:6.2} s  {}", plan.cases.len(), time.as_secs_f64(), visible(url)));
+        }
+    }
+    match (summary.compared, summary.differing.as_slice()) {
+        (None, _) => {}
+        (Some(compared), []) => print(format!("{compared} cases came to the same on every DUT")),
+        (Some(compared), differing) => {
+            print(format!("{} of {compared} cases did not come to the same on every DUT:", differing.len()));
+            for case in differing.iter().take(TOLD) {
+                let url = |number: usize| taken.get(number).map_or("", |(url, _)| *url);
+                let outcomes: Vec<String> = case
+                    .outcomes
+                    .iter()
+                    .map(|(number, outcome)| format!("{outcome} on {}", visible(url(*number))))
+                    .collect();
+                print(format!("  {}: {}", case.key, outcomes.join(", ")));
+            }
+        }
     }
 }
 
