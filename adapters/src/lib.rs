@@ -16,6 +16,7 @@ mod connect;
 mod contract;
 mod error;
 pub mod frame;
+mod latency;
 mod library;
 mod listener;
 pub mod message;
@@ -32,6 +33,7 @@ pub use contract::{
     Role, Seen, Service, SmiRequest, SmiResult, SmiService, Source, Stimulus, Variant, smi,
 };
 pub use error::{DutError, Fault};
+pub use latency::{Latency, MADE_UP};
 pub use library::{Library, frames_apart};
 pub use listener::{ListenError, Listener, Stop};
 pub use recorder::{Answer, Entry, Happened, Keep, Recorder, Recording};

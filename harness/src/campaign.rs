@@ -8,7 +8,7 @@ use crate::plan::{Plan, Planned};
 use crate::profile::Profile;
 use crate::session::Session;
 use crate::tester::Tester;
-use fsct_adapters::{Description, Dut, DutError, Observation, Pco, Seen, Stimulus, Variant};
+use fsct_adapters::{Description, Dut, DutError, MADE_UP, Observation, Pco, Seen, Stimulus, Variant};
 use fsct_protocol::crc::Reading;
 use fsct_protocol::spdu::Port;
 use fsct_reports::record::{CaseRecord, DutInfo, Execution, Reason, RequirementRef, StepRecord, VariantInfo, Verdict};
@@ -22,8 +22,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 const UNREACHED: usize = 3;
 /// After this many cases in a row in which the DUT was lost, the rest is not tried.
 const LOST: usize = 25;
-/// A kind of stimulus nobody knows.
-pub const MADE_UP: u8 = 0xEE;
 
 /// A DUT that has said hello and passed the preflight.
 pub struct Bench {

@@ -11,7 +11,7 @@ use crate::profile::{Parameterization, Profile};
 use crate::session::{Reply, Session, Stop};
 use crate::tester::Tester;
 use fsct_adapters::{DutError, Fault, Mode, Octets, Pco, Role, Service, Stimulus};
-use fsct_protocol::fsp::{INDEX_PROTOCOL, INDEX_VERIFY};
+use fsct_protocol::fsp::{INDEX_PROTOCOL, INDEX_VERIFY, Protocol};
 use fsct_reports::record::{Execution, Reason, StepRecord, Verdict};
 
 /// The bound of the liveness requirement (R-11.5.3-22): 8 SCL cycles plus 2 FSP_Watchdog.
@@ -545,7 +545,7 @@ impl<'s, 'd> Engine<'s, 'd> {
             self.acyclic(Stimulus::Write { index, subindex: 0, data })?;
             if self.session.reply != Some(Reply::Written) {
                 let expected = format!("record 0x{index:04X} written");
-                let observed = format!("{:?}", self.session.reply);
+                let observed = self.session.replied();
                 self.reason(Verdict::Inconclusive, "start/parameterization", "A.1 Table A.1", &expected, &observed);
                 return Err(Stop::Unserved(format!("the write of record 0x{index:04X} was not carried out")));
             }
@@ -553,16 +553,17 @@ impl<'s, 'd> Engine<'s, 'd> {
         Ok(())
     }
 
-    /// FSP_IO_StructCRC is the maker's: the DUT tells it.
+    /// FSP_IO_StructCRC is the maker's: the DUT tells it. The whole record is read, for a product need not serve its Subindices.
     fn io_struct_crc(&mut self) -> Result<u16, Stop> {
-        self.acyclic(Stimulus::Read { index: INDEX_PROTOCOL, subindex: 4 })?;
-        match &self.session.reply {
-            Some(Reply::Value(data)) => match data.as_slice() {
-                [high, low] => Ok(u16::from_be_bytes([*high, *low])),
-                _ => Err(Stop::Unserved(format!("FSP_IO_StructCRC has 2 octets, the DUT answered {}", data.len()))),
-            },
-            other => Err(Stop::Unserved(format!("reading FSP_IO_StructCRC (0x4201.4) gave {other:?}"))),
-        }
+        self.acyclic(Stimulus::Read { index: INDEX_PROTOCOL, subindex: 0 })?;
+        let told = match &self.session.reply {
+            Some(Reply::Value(data)) => Protocol::fields(data).ok(),
+            _ => None,
+        };
+        told.map(|protocol| protocol.io_struct_crc).ok_or_else(|| {
+            let replied = self.session.replied();
+            Stop::Unserved(format!("the protocol record 0x4201 with FSP_IO_StructCRC could not be read: {replied}"))
+        })
     }
 }
 

@@ -234,13 +234,7 @@ fn service(expectation: &Expectation, before: &Before, session: &Session<'_>, te
 }
 
 fn reply(expectation: &Expectation, session: &Session<'_>) -> Judged {
-    let observed = match &session.reply {
-        None => "no answer".to_owned(),
-        Some(Reply::Value(data)) => hex(data),
-        Some(Reply::Written) => "written".to_owned(),
-        Some(Reply::Refused(error)) => format!("refused 0x{error:04X}"),
-        Some(Reply::Unsupported) => "unsupported".to_owned(),
-    };
+    let observed = session.replied();
     let expected = match &expectation.value {
         Expected::Written => "written".to_owned(),
         Expected::Refused => {

@@ -1,16 +1,16 @@
 //! One case's hold on the DUT: stimuli go out, observations come in, the oracle sees every exchange.
 
-use crate::campaign::MADE_UP;
 use crate::link::Link;
 use crate::oracle::{Mask, Mismatch, Setup};
 use crate::profile::Profile;
-use crate::trace::{Margin, Told};
+use crate::trace::{Margin, Told, hex};
 use fsct_adapters::{
-    ClockKind, Description, Dut, DutError, Keep, Mode, Observation, Octets, Pco, Recorder, Role, Seen, Service,
-    SmiRequest, SmiResult, Stimulus,
+    ClockKind, Description, Dut, DutError, Keep, MADE_UP, Mode, Observation, Octets, Pco, Recorder, Role, Seen,
+    Service, SmiRequest, SmiResult, Stimulus,
 };
 use fsct_protocol::spdu::View;
 use std::collections::BTreeMap;
+use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -53,6 +53,17 @@ pub enum Reply {
     Refused(u16),
     /// Not served.
     Unsupported,
+}
+
+impl fmt::Display for Reply {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Reply::Value(data) => f.write_str(&hex(data)),
+            Reply::Written => f.write_str("written"),
+            Reply::Refused(error) => write!(f, "refused 0x{error:04X}"),
+            Reply::Unsupported => f.write_str("unsupported"),
+        }
+    }
 }
 
 /// The hold.
@@ -410,6 +421,11 @@ impl<'d> Session<'d> {
             },
         }
         Ok(())
+    }
+
+    /// The answer to the latest read or write, in words.
+    pub fn replied(&self) -> String {
+        self.reply.as_ref().map_or_else(|| "no answer".to_owned(), Reply::to_string)
     }
 
     /// Entries recorded so far.

@@ -5,6 +5,7 @@
 mod bench;
 mod check;
 mod crc;
+mod doctor;
 mod explain;
 mod host;
 mod list;
@@ -46,6 +47,8 @@ struct Cli {
 enum Command {
     /// Judge a DUT; without --dut the embedded reference FS-Device
     Run(run::Args),
+    /// Reach a DUT, say what it is and which suites apply: the first command on a new bench
+    Doctor(doctor::Args),
     /// List the cases there are
     List(list::Args),
     /// Check cases, ledger and profiles without a DUT
@@ -74,6 +77,7 @@ pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let code = std::panic::catch_unwind(|| match cli.command {
         Command::Run(args) => run::run(&args),
+        Command::Doctor(args) => doctor::run(&args),
         Command::List(args) => list::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Explain(args) => explain::run(&args),

@@ -120,14 +120,7 @@ fn execute(args: &Args) -> Result<u8, u8> {
             return Err(fail(USAGE, format!("there is no suite `{suite}`; {help}")));
         }
     }
-    let mut profiles = Vec::new();
-    for name in &args.profile {
-        let found = profile(name, &library.profiles)?;
-        if profiles.iter().any(|other: &Profile| other.role == found.role) {
-            return Err(fail(USAGE, format!("`--profile` is given twice for a {}", found.role)));
-        }
-        profiles.push(found);
-    }
+    let profiles = given_profiles(&args.profile, &library)?;
     let urls: Vec<&str> = match args.dut.as_slice() {
         [] => {
             let chosen = |url: &&str| {
@@ -235,14 +228,34 @@ fn candidate<'a>(
             profiles.first().map_or(fsct_adapters::Role::Device, |profile| profile.role)
         }
     };
-    let own = profiles.iter().find(|profile| profile.role == role);
-    let profile = match own.or_else(|| library.profiles.get(&default_profile(role))) {
-        Some(profile) => profile,
-        None => return Err(fail(USAGE, format!("there is no profile for a {role}; give one by --profile"))),
-    };
+    let profile = candidate_profile(role, profiles, library)?;
     let description = first.as_ref().map_or_else(|_| unreached(profile.role), |bench| bench.description.clone());
     let allowed = tolerances(args, profile, &library.tolerances)?;
     Ok(Candidate { url, address, profile, allowed, first, description })
+}
+
+/// The profiles that `--profile` names, one for each role at the most.
+pub(super) fn given_profiles(names: &[String], library: &Library) -> Result<Vec<Profile>, u8> {
+    let mut profiles: Vec<Profile> = Vec::new();
+    for name in names {
+        let found = profile(name, &library.profiles)?;
+        if profiles.iter().any(|other| other.role == found.role) {
+            return Err(fail(USAGE, format!("`--profile` is given twice for a {}", found.role)));
+        }
+        profiles.push(found);
+    }
+    Ok(profiles)
+}
+
+/// The profile a DUT of this role is judged by: the one given, or the default.
+pub(super) fn candidate_profile<'a>(
+    role: fsct_adapters::Role,
+    given: &'a [Profile],
+    library: &'a Library,
+) -> Result<&'a Profile, u8> {
+    let own = given.iter().find(|profile| profile.role == role);
+    own.or_else(|| library.profiles.get(&default_profile(role)))
+        .ok_or_else(|| fail(USAGE, format!("there is no profile for a {role}; give one by --profile")))
 }
 
 /// The profile a DUT is judged by when none is given.
