@@ -17,7 +17,8 @@ fn it_tells_what_a_dut_is_and_what_applies(
 ) {
     let outcome = fsct(&["doctor", "--dut", &format!("inproc:reference-{dut}")]);
     assert_eq!((outcome.code, outcome.err.as_str()), (0, ""));
-    for text in [role, suite, left_out, "clock     virtual, resolution 1 ns", "over 200 round trips", "answered `unsupported`"]
+    for text in
+        [role, suite, left_out, "clock     virtual, resolution 1 ns", "over 200 round trips", "answered `unsupported`"]
     {
         assert!(outcome.out.contains(text), "{text:?} is missing in\n{}", outcome.out);
     }

@@ -31,6 +31,7 @@ fn executed(out: &Folder, execution: &str) -> usize {
 #[rstest]
 #[case::aborts("ABORT", "dut-error", "signal: 6 (SIGABRT)")]
 #[case::crashes("CRASH", "dut-error", "signal: 11 (SIGSEGV)")]
+#[case::is_killed("KILL", "dut-error", "signal: 9 (SIGKILL)")]
 #[case::ends("EXIT", "dut-error", "exit status: 7")]
 #[case::loops("LOOP", "timeout", "no complete answer within 500ms")]
 #[case::floods("FLOOD", "timeout", "no complete answer within 500ms")]
@@ -47,6 +48,18 @@ fn a_library_that_misbehaves_costs_one_case(#[case] fault: &str, #[case] executi
     assert_eq!(executed(&out, execution), 1, "one case is lost");
     assert!(executed(&out, "ok") > 50, "the others are judged");
     assert!(!out.text("run.jsonl").contains(r#""verdict":"fail""#), "nothing is held against the product");
+}
+
+#[test]
+fn a_program_that_is_killed_costs_one_case() {
+    let sources = [&[MISBEHAVING, "fsct_client.c"], DEVICE].concat();
+    let options = ["-Dfsct_dut=example_dut", "-DFAULT=KILL", "-DAT=700", "-DPROGRAM", "-D_POSIX_C_SOURCE=200809L"];
+    let Some(program) = fsct_c::build(Kind::Program, &sources, &options) else { return };
+    let out = Folder::new("exec-kill");
+    let outcome = run(&format!("exec:{}", program.display()), &out);
+    assert_eq!(outcome.code, 3, "{outcome:?}");
+    assert!(outcome.err.contains("dut-error FSD-01") && outcome.err.contains("signal: 9 (SIGKILL)"), "{}", outcome.err);
+    assert_eq!((executed(&out, "dut-error"), executed(&out, "ok") > 50), (1, true));
 }
 
 #[test]

@@ -28,16 +28,16 @@ pub enum Kind {
     Library,
 }
 
-/// Whether there is a C compiler. If not, the test that asks says so.
+/// Whether there is a program, such as the compiler `cc`. If not, the test that asks says so.
 ///
 /// # Panics
 /// With the variable `CI` set, when there is none: a check that is meant to be made must not be passed over there.
-pub fn compiler() -> bool {
-    let there = Command::new("cc").arg("--version").output().is_ok_and(|output| output.status.success());
+pub fn there(program: &str) -> bool {
+    let there = Command::new(program).arg("--version").output().is_ok_and(|output| output.status.success());
     if !there {
-        assert!(std::env::var_os("CI").is_none(), "there is no C compiler `cc`, and CI is to have one");
+        assert!(std::env::var_os("CI").is_none(), "there is no `{program}`, and CI is to have it");
         // Not by a macro: those are kept back while a test passes.
-        let _ = writeln!(std::io::stderr(), "NOT TESTED: there is no C compiler `cc` on this machine");
+        let _ = writeln!(std::io::stderr(), "NOT TESTED: there is no `{program}` on this machine");
     }
     there
 }
@@ -49,7 +49,7 @@ pub fn compiler() -> bool {
 /// When the compiler refuses, with what it says.
 pub fn build(kind: Kind, sources: &[&str], options: &[&str]) -> Option<PathBuf> {
     static BUILT: Mutex<BTreeMap<String, PathBuf>> = Mutex::new(BTreeMap::new());
-    if !compiler() {
+    if !there("cc") {
         return None;
     }
     let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);

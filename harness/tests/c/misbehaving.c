@@ -3,11 +3,12 @@
  *
  * SPDX-License-Identifier: MIT OR Apache-2.0
  */
-#include "fsct_dut.h"
+#include "fsct_client.h"
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { NONE, ABORT, CRASH, LOOP, EXIT, FLOOD, NULL_OBSERVATION, NULL_OCTETS, PRINT, UNKNOWN_KIND };
+enum { NONE, ABORT, CRASH, LOOP, EXIT, FLOOD, NULL_OBSERVATION, NULL_OCTETS, PRINT, UNKNOWN_KIND, KILL };
 
 static const struct example_dut *inner;
 static unsigned long exchanges;
@@ -25,6 +26,7 @@ static void misbehave(struct fsct_sink *sink)
     case NULL_OBSERVATION: sink->see(sink, NULL); break;
     case NULL_OCTETS: fsct_service(sink, 1, FSCT_PDout_D, NULL, 3); break;
     case PRINT: printf("\xF5\xC7 not a frame\n"); fflush(stdout); break;
+    case KILL: raise(9); break;
     case UNKNOWN_KIND: fsct_see(sink, fsct_seen(99)); break;
     default: break;
     }
@@ -59,3 +61,7 @@ FSCT_EXPORT const struct example_dut *fsct_dut(void)
 #endif
     return &outer;
 }
+
+#ifdef PROGRAM
+#include "main.c"
+#endif
