@@ -256,12 +256,9 @@ static int decode(struct fsct_stimulus *to, const uint8_t *tlv)
 /* What is wrong with the `count` stimuli, or null. They are looked at before any is carried out. */
 static const char *apply_error(const uint8_t *tlv, const uint8_t *end, size_t count)
 {
-    struct fsct_stimulus stimulus;
     for (; count > 0; count--) {
         if (end - tlv < TLV || (size_t)(end - tlv) < TLV + get(tlv + 1, 2))
             return "stimuli do not end where the payload ends";
-        if (!decode(&stimulus, tlv))
-            return "the length of a stimulus does not fit its kind";
         tlv += TLV + get(tlv + 1, 2);
     }
     return tlv == end ? NULL : "more octets than stimuli";
@@ -282,8 +279,10 @@ static void apply(struct fsct_client *client, const uint8_t *payload, size_t len
     add_number(client, 0, 1);
     for (size_t i = 0; i < count && client->filled > 0; i++, tlv += TLV + get(tlv + 1, 2)) {
         client->position = (uint16_t)i;
-        decode(&stimulus, tlv);
-        client->dut->apply(client->dut->self, &stimulus, &client->sink);
+        if (decode(&stimulus, tlv))
+            client->dut->apply(client->dut->self, &stimulus, &client->sink);
+        else
+            fsct_unsupported(&client->sink);
     }
     if (client->filled > 0)
         send(client, OBSERVED);

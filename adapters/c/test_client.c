@@ -277,10 +277,13 @@ static void nonsense(void)
 {
     static const char *const wrong[] = {
         "", "00", "00 01", "00 01 C8", "00 01 C8 00 01", "00 01 C8 00 01 00 00", "00 00 00", "00 02 C8 00 00",
+        "00 02 C8 00 00 02 00",
+    };
+    static const char *const misshapen[] = {
         "00 01 01 00 03 01 01 02", "00 01 02 00 00", "00 01 03 00 01 01", "00 01 04 00 02 42 01", "00 01 05 00 02 42 01",
         "00 01 06 00 01 01", "00 01 07 00 07 00 00 00 00 00 00 00", "00 01 08 00 00", "00 01 08 00 03 01 11 03",
         "00 01 09 00 01 01", "00 01 09 00 03 01 03 80", "00 01 0A 00 03 01 B0 02", "00 01 0B 00 02 01 02",
-        "00 01 0C 00 05 02 00 12 34 01", "00 02 C8 00 00 02 00 00",
+        "00 01 0C 00 05 02 00 12 34 01",
     };
     uint8_t octets[600] = {0}, payload[512] = {0, 1, 3, 0, 35, 1, 1};
     int met = 1;
@@ -294,10 +297,18 @@ static void nonsense(void)
             met = 0;
         }
     }
-    check("what does not end where it should, or is too short, is an error and nothing of it is carried out", met);
+    check("what does not end where it should is an error, and nothing of it is carried out", met);
+    for (size_t i = 0; i < sizeof misshapen / sizeof misshapen[0]; i++) {
+        if (!request(0x02, misshapen[i], 0x82) || stimuli != 0 || sent[17] != FSCT_UNSUPPORTED) {
+            printf("     not unsupported: %s\n", misshapen[i]);
+            met = 0;
+        }
+    }
+    check("a value too short for its kind is unsupported, and does not reach the DUT", met);
     forget();
     take(octets, frame(octets, 0x02, 9, payload, 5 + 35));
-    check("more process data than a DUT has to expect are an error", sent_frames == 1 && sent[2] == 0xFF && stimuli == 0);
+    check("so are more process data than a DUT has to expect",
+          sent_frames == 1 && sent[2] == 0x82 && sent[17] == FSCT_UNSUPPORTED && stimuli == 0);
 }
 
 static void stimuli_decoded(void)
