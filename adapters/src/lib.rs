@@ -32,6 +32,7 @@ pub use contract::{
     Role, Seen, Service, SmiRequest, SmiResult, SmiService, Source, Stimulus, Variant, smi,
 };
 pub use error::{DutError, Fault};
+pub use fsct_protocol::{Edition, ProtMode};
 pub use library::{Library, frames_apart};
 pub use listener::{ListenError, Listener, Stop};
 pub use recorder::{Answer, Entry, Happened, Keep, Recorder, Recording};

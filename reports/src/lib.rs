@@ -14,6 +14,7 @@ mod summary;
 mod text;
 
 pub use journal::{FILE, Journal, ReadError, Reader, Run, read};
+pub use story::{headline, story};
 pub use summary::{Summary, execution_name, verdict_name};
 pub use text::visible;
 
