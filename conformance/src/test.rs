@@ -80,3 +80,56 @@ impl Test {
         (self.run)()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fsct_reports::record::VariantInfo;
+
+    fn ended(execution: Execution, verdict: Verdict) -> Outcome {
+        Outcome::of(&CaseRecord {
+            key: "FSD-0001[pd=3]".to_owned(),
+            id: "FSD-0001".to_owned(),
+            suite: "device".to_owned(),
+            dut: 0,
+            role: "device".to_owned(),
+            title: "A case".to_owned(),
+            place: "device.yaml:1".to_owned(),
+            sweep: Vec::new(),
+            variant: VariantInfo::default(),
+            requirements: Vec::new(),
+            verdict,
+            execution,
+            reasons: Vec::new(),
+            tolerances: [("A19".to_owned(), "another \u{1b}reading".to_owned())].into(),
+            transitions: [].into(),
+            start: "operate".to_owned(),
+            steps: Vec::new(),
+            trace: Vec::new(),
+            elided: 0,
+            duration_ns: 0,
+            replay: "cargo test".to_owned(),
+        })
+    }
+
+    #[test]
+    fn only_pass_and_remark_of_a_case_that_ran_are_ok() {
+        assert_eq!(ended(Execution::Ok, Verdict::Pass), Outcome::Passed);
+        let remark = "remark FSD-0001[pd=3]: tolerance A19: another \\u{1b}reading";
+        assert_eq!(ended(Execution::Ok, Verdict::Remark), Outcome::Remark(remark.to_owned()));
+        for (execution, verdict, word) in [
+            (Execution::Ok, Verdict::Fail, "fail: "),
+            (Execution::Ok, Verdict::Inconclusive, "inconclusive: "),
+            (Execution::Timeout, Verdict::Pass, "timeout: "),
+            (Execution::DutError, Verdict::Inconclusive, "dut-error: "),
+            (Execution::RigError, Verdict::Inconclusive, "rig-error: "),
+            (Execution::ToolError, Verdict::Pass, "tool-error: "),
+            (Execution::Aborted, Verdict::Inconclusive, "aborted: "),
+        ] {
+            match ended(execution, verdict) {
+                Outcome::Failed(text) => assert!(text.starts_with(word) && !text.contains('\u{1b}'), "{text}"),
+                other => panic!("{execution:?} with {verdict:?} is {other:?}"),
+            }
+        }
+    }
+}
