@@ -33,6 +33,7 @@ pub use contract::{
     Role, Seen, Service, SmiRequest, SmiResult, SmiService, Source, Stimulus, Variant, smi,
 };
 pub use error::{DutError, Fault};
+pub use fsct_protocol::{Edition, ProtMode};
 pub use latency::{Latency, MADE_UP};
 pub use library::{Library, frames_apart};
 pub use listener::{ListenError, Listener, Stop};

@@ -14,6 +14,11 @@ use std::sync::Arc;
 
 static EMBEDDED: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/testcases.rs"));
 
+fn embedded_sources() -> Vec<Arc<Source>> {
+    let source = |(name, text): &(&str, &str)| Arc::new(Source { name: (*name).to_owned(), text: (*text).to_owned() });
+    EMBEDDED.iter().map(source).collect()
+}
+
 /// Suites, start conditions, ledger, tolerances and profiles.
 #[derive(Debug)]
 pub struct Library {
@@ -35,9 +40,28 @@ impl Library {
     /// # Errors
     /// Every problem of the files; none in a binary that passed its own tests.
     pub fn embedded() -> Result<Library, Vec<Problem>> {
-        let sources =
-            EMBEDDED.iter().map(|(name, text)| Arc::new(Source { name: (*name).to_owned(), text: (*text).to_owned() }));
-        Library::from_sources(sources.collect())
+        Library::from_sources(embedded_sources())
+    }
+
+    /// What the binary carries, without the suites and the parts of the ledger that a case has nothing to do with: for a
+    /// process that runs this one case and is to begin soon.
+    ///
+    /// # Errors
+    /// As [`Library::embedded`].
+    pub fn embedded_for(id: &str) -> Result<Library, Vec<Problem>> {
+        let mut sources = embedded_sources();
+        sources.retain(|source| !source.name.contains("suites/") || source.text.contains(id));
+        let suites = sources.iter().filter(|source| source.name.contains("suites/"));
+        let cases = suites.filter_map(|source| case::suite(source).ok()).flat_map(|suite| suite.cases);
+        let cited: Vec<String> = cases
+            .filter(|case| case.id == id)
+            .flat_map(|case| case.requirements)
+            .map(|requirement| format!("id: {requirement}\n"))
+            .collect();
+        sources.retain(|source| {
+            !source.name.contains("requirements/") || cited.iter().any(|record| source.text.contains(record))
+        });
+        Library::from_sources(sources)
     }
 
     /// A folder laid out like `testcases/`.

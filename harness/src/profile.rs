@@ -69,6 +69,11 @@ pub struct Profile {
     pub strict: Mask,
 }
 
+/// Name of the profile a DUT is judged by when none is given.
+pub fn default_profile(role: Role) -> String {
+    format!("reference-{role}")
+}
+
 impl Profile {
     /// Reads a profile.
     ///
@@ -190,6 +195,29 @@ impl Profile {
             Parameterization::VerifyRecord => vec![verify],
             Parameterization::None => Vec::new(),
         }
+    }
+
+    /// The tolerances in force: those of the table, as this profile and then the user change them; `all` strict is none.
+    ///
+    /// # Errors
+    /// One sentence for the user about an id that is none.
+    pub fn allowed(&self, table: &Tolerances, strict: &[String], tolerate: &[String]) -> Result<Mask, String> {
+        let number = |id: &String| {
+            Tolerances::number(id)
+                .ok_or_else(|| format!("`{id}` is no tolerance, A01 to A38 are; see `fsct explain A19`"))
+        };
+        let mut allowed = table.in_force().union(self.tolerate);
+        self.strict.iter().for_each(|number| allowed = allowed.without(number));
+        for id in strict {
+            match id.as_str() {
+                "all" => allowed = Mask::NONE,
+                _ => allowed = allowed.without(number(id)?),
+            }
+        }
+        for id in tolerate {
+            allowed = allowed.with(number(id)?);
+        }
+        Ok(allowed)
     }
 
     /// What contradicts what the DUT says of itself; empty when they agree.

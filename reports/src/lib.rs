@@ -16,6 +16,7 @@ mod text;
 
 pub use compare::Differing;
 pub use journal::{FILE, Journal, ReadError, Reader, Run, read};
+pub use story::{headline, story};
 pub use summary::{Summary, execution_name, verdict_name};
 pub use text::visible;
 

@@ -1,9 +1,9 @@
 //! `fsct list`: the cases there are.
 
-use super::run::default_profile;
 use super::{Cases, print, show};
 use crate::library::EVERYTHING;
 use crate::plan::{Selection, plan, unreached};
+use crate::profile::default_profile;
 use fsct_adapters::Role;
 
 /// Arguments of `fsct list`.

@@ -6,7 +6,7 @@ use crate::library::Library;
 use crate::oracle::{Mask, Tolerances};
 use crate::plan::{Plan, Selection, plan, unreached};
 use crate::problem::suggestion;
-use crate::profile::Profile;
+use crate::profile::{Profile, default_profile};
 use crate::yaml;
 use fsct_adapters::{Address, Description, DutError};
 use fsct_protocol::Edition;
@@ -230,7 +230,7 @@ fn candidate<'a>(
     };
     let profile = candidate_profile(role, profiles, library)?;
     let description = first.as_ref().map_or_else(|_| unreached(profile.role), |bench| bench.description.clone());
-    let allowed = tolerances(args, profile, &library.tolerances)?;
+    let allowed = profile.allowed(&library.tolerances, &args.strict, &args.tolerate).map_err(|why| fail(USAGE, why))?;
     Ok(Candidate { url, address, profile, allowed, first, description })
 }
 
@@ -258,11 +258,6 @@ pub(super) fn candidate_profile<'a>(
         .ok_or_else(|| fail(USAGE, format!("there is no profile for a {role}; give one by --profile")))
 }
 
-/// The profile a DUT is judged by when none is given.
-pub(super) fn default_profile(role: fsct_adapters::Role) -> String {
-    format!("reference-{role}")
-}
-
 /// Whether a word on the command line is a file of cases and not the name of a suite.
 fn is_file(suite: &str) -> bool {
     suite.ends_with(".yaml") || suite.ends_with(".yml")
@@ -279,25 +274,6 @@ fn profile(name: &str, known: &BTreeMap<String, Profile>) -> Result<Profile, u8>
     }
     let source = yaml::load(path).map_err(|problem| show(&[problem]))?;
     Profile::parse(&source).map_err(|problems| show(&problems))
-}
-
-fn tolerances(args: &Args, profile: &Profile, table: &Tolerances) -> Result<Mask, u8> {
-    let number = |id: &String| {
-        Tolerances::number(id)
-            .ok_or_else(|| fail(USAGE, format!("`{id}` is no tolerance, A01 to A38 are; see `fsct explain A19`")))
-    };
-    let mut allowed = table.in_force().union(profile.tolerate);
-    profile.strict.iter().for_each(|number| allowed = allowed.without(number));
-    for id in &args.strict {
-        match id.as_str() {
-            "all" => allowed = Mask::NONE,
-            _ => allowed = allowed.without(number(id)?),
-        }
-    }
-    for id in &args.tolerate {
-        allowed = allowed.with(number(id)?);
-    }
-    Ok(allowed)
 }
 
 fn in_force(allowed: Mask, table: &Tolerances) -> BTreeMap<String, String> {
