@@ -224,7 +224,7 @@ impl Dut for TableDevice {
                         scl.set_sdset_ds(value.is_set());
                     }
                 }
-                Stimulus::Read { .. } => seen.push(Seen::Value(vec![0, 0])),
+                Stimulus::Read { .. } => seen.push(Seen::Value(vec![0; 12])),
                 Stimulus::Write { index, .. } => {
                     if *index == 0x4202 {
                         self.start();

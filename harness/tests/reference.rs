@@ -4,7 +4,7 @@ mod common;
 mod references;
 
 use common::{library, run, run_with, story};
-use fsct_adapters::Dut;
+use fsct_adapters::{Description, Dut, DutError, Observation, Seen, Stimulus};
 use fsct_harness::plan::Selection;
 use fsct_reference::{ConstantDevice, EchoDevice, FsDevice, Mutant, NullDevice, Options};
 use fsct_reports::record::{CaseRecord, Verdict};
@@ -31,6 +31,35 @@ fn the_reference_device_conforms_and_takes_every_transition() {
         assert!(cases.iter().any(|case| case.key.contains(wanted)), "{wanted} was never run");
     }
     let others = not_passed(cases);
+    assert!(others.is_empty(), "{}", story(&others));
+}
+
+/// A product whose FSP records are only to be had as a whole, as the IODD of iec2022 declares them.
+struct WholeRecords(FsDevice);
+
+impl Dut for WholeRecords {
+    fn hello(&mut self) -> Result<Description, DutError> {
+        self.0.hello()
+    }
+
+    fn apply(&mut self, stimuli: &[Stimulus], observed: &mut Vec<Observation>) -> Result<(), DutError> {
+        let from = observed.len();
+        self.0.apply(stimuli, observed)?;
+        for observation in observed.iter_mut().skip(from) {
+            let asked = stimuli.get(usize::from(observation.stimulus));
+            if matches!((asked, &observation.seen), (Some(Stimulus::Read { subindex: 1.., .. }), Seen::Value(_))) {
+                observation.seen = Seen::Refused { error: 0x8012 };
+            }
+        }
+        Ok(())
+    }
+}
+
+#[test]
+fn a_product_need_not_serve_subindices() {
+    let make = || -> Box<dyn Dut> { Box::new(WholeRecords(FsDevice::new(Options::default()))) };
+    let selection = Selection { filter: vec!["FSD-02".into()], ..Selection::default() };
+    let others = not_passed(run(&library(), &selection, make));
     assert!(others.is_empty(), "{}", story(&others));
 }
 
