@@ -16,6 +16,7 @@ mod connect;
 mod contract;
 mod error;
 pub mod frame;
+mod latency;
 mod listener;
 pub mod message;
 mod process;
@@ -31,6 +32,7 @@ pub use contract::{
     Role, Seen, Service, SmiRequest, SmiResult, SmiService, Source, Stimulus, Variant, smi,
 };
 pub use error::{DutError, Fault};
+pub use latency::{Latency, MADE_UP};
 pub use listener::{ListenError, Listener, Stop};
 pub use recorder::{Answer, Entry, Happened, Keep, Recorder, Recording};
 pub use serve::{MAX_CONNECTIONS, serve, serve_stream};

@@ -23,7 +23,7 @@ const UNREACHED: usize = 3;
 /// After this many cases in a row in which the DUT was lost, the rest is not tried.
 const LOST: usize = 25;
 /// A kind of stimulus nobody knows.
-pub const MADE_UP: u8 = 0xEE;
+pub const MADE_UP: u8 = fsct_adapters::MADE_UP;
 
 /// A DUT that has said hello and passed the preflight.
 pub struct Bench {
