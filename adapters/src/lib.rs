@@ -1,6 +1,6 @@
 //! The contract with a device under test and every way to reach one.
 //!
-//! This crate moves octets. It knows frames, processes and sockets; it does not know what an SPDU is.
+//! This crate moves octets. It knows frames, processes, sockets and serial lines; it does not know what an SPDU is.
 //!
 //! ```no_run
 //! use fsct_adapters::{Address, Dut, connect};
@@ -21,6 +21,7 @@ mod listener;
 pub mod message;
 mod process;
 mod recorder;
+mod serial;
 mod serve;
 mod socket;
 mod stream;
@@ -35,5 +36,6 @@ pub use error::{DutError, Fault};
 pub use latency::{Latency, MADE_UP};
 pub use listener::{ListenError, Listener, Stop};
 pub use recorder::{Answer, Entry, Happened, Keep, Recorder, Recording};
+pub use serial::{Flow, Reset, SerialOptions, WAIT};
 pub use serve::{MAX_CONNECTIONS, serve, serve_stream};
 pub use stream::{FLOOD_PER_STIMULUS, FLOOD_SLACK, Peer, REPLY_TIMEOUT, StreamDut};

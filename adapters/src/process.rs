@@ -3,7 +3,7 @@
 use crate::stream::Peer;
 use std::collections::VecDeque;
 use std::io::{self, Read};
-use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, Stdio};
+use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
@@ -48,13 +48,24 @@ impl Process {
 
     fn end(&mut self) -> String {
         // Whoever heeds the end of the standard input ends in order, and has said its last words then.
-        let running = self.stderr.recv_timeout(GRACE) == Err(RecvTimeoutError::Timeout);
-        self.kill();
-        let status = match self.child.wait() {
-            _ if running => "it was still running and has been killed".to_owned(),
+        let status = match self.end_within(GRACE) {
             Ok(status) => status.to_string(),
             Err(error) => error.to_string(),
         };
+        self.with_last_words(&status)
+    }
+
+    /// Waits for the end and makes sure of it.
+    fn end_within(&mut self, grace: Duration) -> io::Result<ExitStatus> {
+        let running = self.stderr.recv_timeout(grace) == Err(RecvTimeoutError::Timeout);
+        self.kill();
+        let status = self.child.wait();
+        let killed = || io::Error::new(io::ErrorKind::TimedOut, "it was still running and has been killed");
+        if running { Err(killed()) } else { status }
+    }
+
+    /// How it ended, as [`Peer::close`] says it.
+    fn with_last_words(&self, status: &str) -> String {
         match self.last_line() {
             Some(line) => format!(" ({status}, its last words \"{line}\")"),
             None => format!(" ({status})"),
@@ -97,6 +108,25 @@ impl Drop for Process {
     fn drop(&mut self) {
         self.close();
     }
+}
+
+/// Runs a program to its end, which has to come in time and to be a success.
+pub(crate) fn run(program: &str, args: &[String], within: Duration) -> io::Result<()> {
+    let (mut stdout, stdin, mut process) = Process::start(program, args)?;
+    drop(stdin);
+    thread::spawn(move || io::copy(&mut stdout, &mut io::sink()));
+    let outcome = process.end_within(within);
+    let (kind, status) = match outcome {
+        Ok(status) if status.success() => {
+            process.how = Some(String::new());
+            return Ok(());
+        }
+        Ok(status) => (io::ErrorKind::Other, status.to_string()),
+        Err(error) => (error.kind(), error.to_string()),
+    };
+    let how = process.with_last_words(&status);
+    process.how = Some(how.clone());
+    Err(io::Error::new(kind, how.trim().to_owned()))
 }
 
 /// Reads to the end and keeps the latest octets. `_ended` says by its end that there will be no more.

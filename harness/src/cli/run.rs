@@ -28,7 +28,7 @@ pub struct Args {
     /// Names of suites, or files of cases; none: all suites
     #[arg(value_name = "SUITE")]
     suites: Vec<String>,
-    /// Device under test: inproc:NAME, exec:PROGRAM ARGS, tcp://HOST:PORT or unix:PATH; may be repeated. Without it the
+    /// Device under test: inproc:NAME, exec:PROGRAM ARGS, tcp://HOST:PORT, unix:PATH or serial:PATH; may be repeated. Without it the
     /// reference FS-Device and the reference FS-Master are judged
     #[arg(long, value_name = "URL")]
     dut: Vec<String>,
