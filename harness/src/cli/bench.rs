@@ -8,6 +8,9 @@ use fsct_reference::{
     Options,
 };
 
+/// How often a line that loses octets is tried.
+const TRIES: usize = 3;
+
 /// What `inproc:` can reach.
 const IN_PROCESS: [&str; 8] = [
     "reference-device",
@@ -41,9 +44,25 @@ pub fn connect(address: &Address) -> Result<Bench, DutError> {
         Address::Inproc { name, query } => {
             in_process(name, query).map_err(|why| DutError::Unreachable { url: address.to_string(), why })?
         }
+        Address::Serial { .. } => return connect_line(address),
         address => fsct_adapters::connect(address)?,
     };
     Bench::greet(dut)
+}
+
+/// As [`connect`], over a line that can lose octets, and measured: jitter is large there and not ours to forget. Nothing said
+/// until then makes a DUT do anything, so a loss costs another try. A DUT that does not say hello has been asked often
+/// enough.
+fn connect_line(address: &Address) -> Result<Bench, DutError> {
+    let mut repeats = 1..TRIES;
+    loop {
+        let mut dut = fsct_adapters::connect(address)?;
+        dut.hello()?;
+        match Bench::greet(dut).and_then(Bench::measure) {
+            Err(DutError::Timeout { .. } | DutError::Line { .. }) if repeats.next().is_some() => {}
+            outcome => return outcome,
+        }
+    }
 }
 
 fn in_process(name: &str, query: &[(String, String)]) -> Result<Box<dyn Dut>, String> {
