@@ -175,11 +175,12 @@ impl FromStr for Address {
                 Ok(Address::Unix { path: PathBuf::from(path), timeout: timeout(query)? })
             }
             Some(("serial:", rest)) => {
-                let (path, query) = split_query(rest)?;
+                let (path, query) = rest.split_once('?').map_or((rest, None), |(path, query)| (path, Some(query)));
                 if path.is_empty() {
                     return Err(missing("the path of a port"));
                 }
-                Ok(Address::Serial { path: PathBuf::from(path), options: SerialOptions::parse(query)? })
+                let options = query.map(SerialOptions::parse).transpose()?.unwrap_or_default();
+                Ok(Address::Serial { path: PathBuf::from(path), options })
             }
             Some((scheme, _)) => Err(AddressError::NotInThisVersion { scheme }),
             None => {
@@ -226,7 +227,7 @@ fn write_timeout(f: &mut fmt::Formatter<'_>, timeout: Option<Duration>) -> fmt::
     timeout.map_or(Ok(()), |timeout| write!(f, "?timeout={}ms", timeout.as_millis()))
 }
 
-pub(crate) type Query = Vec<(String, String)>;
+type Query = Vec<(String, String)>;
 
 /// What stands before `?`, and the pairs behind it.
 fn split_query(text: &str) -> Result<(&str, Query), AddressError> {

@@ -59,6 +59,13 @@ fn reset_by(program: &str, args: &[&str]) -> SerialOptions {
 )]
 #[case("serial:x?reset=rts", serial("x", SerialOptions { reset: Some(Reset::Rts), ..SerialOptions::default() }))]
 #[case("serial:x?reset-command=./reset --port=1 'a b' \"it's\"", serial("x", reset_by("./reset", &["--port=1", "a b", "it's"])))]
+#[case(
+    "serial:x?wait=2s&reset-command=sh -c 'reset 2>&1 || reset?a=b'",
+    serial("x", SerialOptions {
+        wait: Some(Duration::from_secs(2)),
+        ..reset_by("sh", &["-c", "reset 2>&1 || reset?a=b"])
+    })
+)]
 fn addresses(#[case] text: &str, #[case] address: Address) {
     assert_eq!(text.parse(), Ok(address.clone()));
     assert_eq!(address.to_string().parse(), Ok(address));
@@ -107,6 +114,14 @@ fn addresses(#[case] text: &str, #[case] address: Address) {
     "serial:x?speed=9600",
     r#""speed=9600" is no option of a serial line, which has baud, flow, reset, reset-command, wait and timeout"#
 )]
+#[case(
+    "serial:x?",
+    r#""" is no option of a serial line, which has baud, flow, reset, reset-command, wait and timeout"#
+)]
+#[case(
+    "serial:x?baud",
+    r#""baud" is no option of a serial line, which has baud, flow, reset, reset-command, wait and timeout"#
+)]
 #[case("serial:x?baud=fast", r#""baud=fast" is not usable, write baud=115200, in bits a second"#)]
 #[case("serial:x?baud=0", r#""baud=0" is not usable, write baud=115200, in bits a second"#)]
 #[case(
@@ -144,6 +159,13 @@ proptest! {
     #[test]
     fn a_command_line_comes_back(program in "[a-z '\"]{0,8}x", args in prop::collection::vec("[a-z '\"\t\\\\?]{0,8}", 0..5)) {
         let address = Address::Exec { program, args };
+        prop_assert_eq!(address.to_string().parse(), Ok(address));
+    }
+
+    #[test]
+    fn a_reset_by_a_command_comes_back(program in "[a-z '\"&]{0,8}x", args in prop::collection::vec("[a-z '\"\t&?=]{0,8}", 0..5)) {
+        let args: Vec<&str> = args.iter().map(String::as_str).collect();
+        let address = serial("x", SerialOptions { baud: 9600, ..reset_by(&program, &args) });
         prop_assert_eq!(address.to_string().parse(), Ok(address));
     }
 

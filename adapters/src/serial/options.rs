@@ -1,6 +1,6 @@
 //! The options of a `serial:` address.
 
-use crate::address::{AddressError, Query, duration, quoted, split_words};
+use crate::address::{AddressError, duration, quoted, split_words};
 use std::fmt;
 use std::time::Duration;
 
@@ -52,25 +52,33 @@ pub enum Reset {
 }
 
 impl SerialOptions {
-    /// From the query of an address.
-    pub(crate) fn parse(query: Query) -> Result<SerialOptions, AddressError> {
+    /// From what stands behind the question mark of an address. A command is the last option, for it may hold anything.
+    pub(crate) fn parse(query: &str) -> Result<SerialOptions, AddressError> {
+        const COMMAND: &str = "reset-command=";
+        let at = query.find(COMMAND).unwrap_or(query.len());
+        let (pairs, command) = query.split_at(at);
+        let pairs = pairs.strip_suffix('&').filter(|_| !command.is_empty()).unwrap_or(pairs);
+        let pairs = pairs.split('&').filter(|pair| command.is_empty() || !pair.is_empty());
         let mut options = SerialOptions::default();
-        let mut seen: Vec<String> = Vec::new();
-        for (key, value) in query {
+        let mut seen = Vec::new();
+        for option in pairs.chain(Some(command).filter(|command| !command.is_empty())) {
+            let owned = || option.to_owned();
+            let (key, value) = option.split_once('=').ok_or_else(|| AddressError::SerialUnknown { option: owned() })?;
             // Both ways to reset are one option.
-            let name = if key == "reset-command" { "reset" } else { key.as_str() };
-            if seen.iter().any(|other| other == name) {
-                return Err(AddressError::SerialTwice { option: format!("{key}={value}") });
+            let name = if key == "reset-command" { "reset" } else { key };
+            if seen.contains(&name) {
+                return Err(AddressError::SerialTwice { option: owned() });
             }
-            seen.push(name.to_owned());
-            let unusable = |meant| AddressError::Serial { option: format!("{key}={value}"), meant };
-            match key.as_str() {
+            seen.push(name);
+            let unusable = |meant| AddressError::Serial { option: owned(), meant };
+            let time = || duration(value).ok_or_else(|| AddressError::Timeout { given: value.to_owned() });
+            match key {
                 "baud" => {
                     let baud = value.parse().ok().filter(|baud| *baud > 0);
                     options.baud = baud.ok_or(unusable("baud=115200, in bits a second"))?;
                 }
                 "flow" => {
-                    options.flow = match value.as_str() {
+                    options.flow = match value {
                         "none" => Flow::None,
                         "hardware" => Flow::Hardware,
                         "software" => {
@@ -82,23 +90,23 @@ impl SerialOptions {
                     }
                 }
                 "reset" => {
-                    options.reset = Some(match value.as_str() {
+                    options.reset = Some(match value {
                         "dtr" => Reset::Dtr,
                         "rts" => Reset::Rts,
                         _ => return Err(unusable("reset=dtr, reset=rts or reset-command=PROGRAM ARGS")),
                     })
                 }
                 "reset-command" => {
-                    let words = split_words(&value).ok().map(Vec::into_iter);
+                    let words = split_words(value).ok().map(Vec::into_iter);
                     let program =
                         words.and_then(|mut words| Some((words.next().filter(|word| !word.is_empty())?, words)));
                     let (program, args) =
                         program.ok_or(unusable("reset-command=PROGRAM ARGS, each quotation mark with its partner"))?;
                     options.reset = Some(Reset::Command { program, args: args.collect() });
                 }
-                "wait" => options.wait = Some(duration(&value).ok_or(AddressError::Timeout { given: value })?),
-                "timeout" => options.timeout = Some(duration(&value).ok_or(AddressError::Timeout { given: value })?),
-                _ => return Err(AddressError::SerialUnknown { option: format!("{key}={value}") }),
+                "wait" => options.wait = Some(time()?),
+                "timeout" => options.timeout = Some(time()?),
+                _ => return Err(AddressError::SerialUnknown { option: owned() }),
             }
         }
         if options.flow == Flow::Hardware && options.reset == Some(Reset::Rts) {
@@ -110,7 +118,7 @@ impl SerialOptions {
 }
 
 impl fmt::Display for SerialOptions {
-    /// What differs from the default, as a query with its question mark.
+    /// What differs from the default, with its question mark; a command is the last.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut options = Vec::new();
         if self.baud != SerialOptions::default().baud {
@@ -121,16 +129,16 @@ impl fmt::Display for SerialOptions {
             Flow::Hardware => options.push("flow=hardware".to_owned()),
         }
         match &self.reset {
-            None => {}
             Some(Reset::Dtr) => options.push("reset=dtr".to_owned()),
             Some(Reset::Rts) => options.push("reset=rts".to_owned()),
-            Some(Reset::Command { program, args }) => {
-                let words: Vec<_> = std::iter::once(program).chain(args).map(|word| quoted(word)).collect();
-                options.push(format!("reset-command={}", words.join(" ")));
-            }
+            Some(Reset::Command { .. }) | None => {}
         }
         options.extend(self.wait.map(|wait| format!("wait={}ms", wait.as_millis())));
         options.extend(self.timeout.map(|timeout| format!("timeout={}ms", timeout.as_millis())));
+        if let Some(Reset::Command { program, args }) = &self.reset {
+            let words: Vec<_> = std::iter::once(program).chain(args).map(|word| quoted(word)).collect();
+            options.push(format!("reset-command={}", words.join(" ")));
+        }
         match options.as_slice() {
             [] => Ok(()),
             options => write!(f, "?{}", options.join("&")),

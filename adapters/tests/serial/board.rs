@@ -4,8 +4,8 @@ use crate::common::*;
 use fsct_adapters::frame::{Decoder, Frame, encode};
 use fsct_adapters::message::*;
 use fsct_adapters::{Address, serve_stream};
-use proptest::test_runner::{RngAlgorithm, TestRng};
-use rand_core::Rng;
+use rand_pcg::Pcg64Mcg;
+use rand_pcg::rand_core::{Rng, SeedableRng};
 use serialport::{SerialPort, TTYPort};
 use std::io::{self, ErrorKind, Read, Write};
 use std::thread::{self, JoinHandle};
@@ -92,13 +92,13 @@ pub struct Ailment {
 struct Ailing<P> {
     port: P,
     ailment: Ailment,
-    rng: TestRng,
+    rng: Pcg64Mcg,
     held: Vec<u8>,
 }
 
 impl<P> Ailing<P> {
-    fn new(port: P, ailment: Ailment, seed: u8) -> Ailing<P> {
-        Ailing { port, ailment, rng: TestRng::from_seed(RngAlgorithm::ChaCha, &[seed; 32]), held: Vec::new() }
+    fn new(port: P, ailment: Ailment, seed: u64) -> Ailing<P> {
+        Ailing { port, ailment, rng: Pcg64Mcg::seed_from_u64(seed), held: Vec::new() }
     }
 
     fn pass(&mut self, octets: &[u8]) -> Vec<u8> {
@@ -141,18 +141,17 @@ impl Write for Ailing<TTYPort> {
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        let held = std::mem::take(&mut self.held);
-        self.port.write_all(&held)
+        Ok(())
     }
 }
 
 /// Serves mirrors on an ailing line until its master side hangs up.
-pub fn ailing_board(port: TTYPort, ailment: Ailment, seed: u8) {
+pub fn ailing_board(port: TTYPort, ailment: Ailment, seed: u64) {
     thread::spawn(move || {
         let mut reading = port.try_clone_native().unwrap();
         reading.set_timeout(Duration::from_millis(200)).unwrap();
         let reader = Ailing::new(reading, ailment, seed);
-        let writer = Ailing::new(port, ailment, seed ^ 0xFF);
+        let writer = Ailing::new(port, ailment, !seed);
         let ended = serve_stream(reader, writer, Box::<Mirror>::default());
         assert!(ended.is_ok() || ended.is_err_and(|error| error.kind() != ErrorKind::TimedOut));
     });
