@@ -3,14 +3,16 @@
 use crate::stream::Peer;
 use std::collections::VecDeque;
 use std::io::{self, Read};
-use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, ExitStatus, Stdio};
+use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// How long a process may take to end by itself once its standard input has ended.
 const GRACE: Duration = Duration::from_millis(200);
+/// How often it is looked whether a process has ended.
+const LOOK: Duration = Duration::from_millis(5);
 /// Octets of standard error kept.
 const KEPT: usize = 4096;
 /// Letters of the last line that are shown.
@@ -48,20 +50,14 @@ impl Process {
 
     fn end(&mut self) -> String {
         // Whoever heeds the end of the standard input ends in order, and has said its last words then.
-        let status = match self.end_within(GRACE) {
+        let running = self.stderr.recv_timeout(GRACE) == Err(RecvTimeoutError::Timeout);
+        self.kill();
+        let status = match self.child.wait() {
+            _ if running => "it was still running and has been killed".to_owned(),
             Ok(status) => status.to_string(),
             Err(error) => error.to_string(),
         };
         self.with_last_words(&status)
-    }
-
-    /// Waits for the end and makes sure of it.
-    fn end_within(&mut self, grace: Duration) -> io::Result<ExitStatus> {
-        let running = self.stderr.recv_timeout(grace) == Err(RecvTimeoutError::Timeout);
-        self.kill();
-        let status = self.child.wait();
-        let killed = || io::Error::new(io::ErrorKind::TimedOut, "it was still running and has been killed");
-        if running { Err(killed()) } else { status }
     }
 
     /// How it ended, as [`Peer::close`] says it.
@@ -110,23 +106,28 @@ impl Drop for Process {
     }
 }
 
-/// Runs a program to its end, which has to come in time and to be a success.
+/// Runs a program to its end, which has to come in time and to be a success; the error says how it ended. What it leaves
+/// running is its own matter.
 pub(crate) fn run(program: &str, args: &[String], within: Duration) -> io::Result<()> {
     let (mut stdout, stdin, mut process) = Process::start(program, args)?;
     drop(stdin);
     thread::spawn(move || io::copy(&mut stdout, &mut io::sink()));
-    let outcome = process.end_within(within);
-    let (kind, status) = match outcome {
-        Ok(status) if status.success() => {
-            process.how = Some(String::new());
-            return Ok(());
+    let begin = Instant::now();
+    while begin.elapsed() < within {
+        match process.child.try_wait()? {
+            None => thread::sleep(LOOK),
+            Some(status) => {
+                // Nobody waits for it any more, so nobody may end it either.
+                process.how = Some(String::new());
+                if status.success() {
+                    return Ok(());
+                }
+                let _ = process.stderr.recv_timeout(GRACE);
+                return Err(io::Error::other(process.with_last_words(&status.to_string()).trim().to_owned()));
+            }
         }
-        Ok(status) => (io::ErrorKind::Other, status.to_string()),
-        Err(error) => (error.kind(), error.to_string()),
-    };
-    let how = process.with_last_words(&status);
-    process.how = Some(how.clone());
-    Err(io::Error::new(kind, how.trim().to_owned()))
+    }
+    Err(io::Error::new(io::ErrorKind::TimedOut, process.close().trim().to_owned()))
 }
 
 /// Reads to the end and keeps the latest octets. `_ended` says by its end that there will be no more.

@@ -62,7 +62,7 @@ fn wait_for(wait: Duration, mut open: impl FnMut() -> io::Result<Port>) -> io::R
     let begin = Instant::now();
     loop {
         match open() {
-            Err(_) if begin.elapsed() < wait => thread::sleep(LOOK),
+            Err(_) if begin.elapsed() < wait => thread::sleep(LOOK.min(wait.saturating_sub(begin.elapsed()))),
             outcome => return outcome.map_err(|error| io::Error::new(error.kind(), format!("{error}, for {wait:?}"))),
         }
     }

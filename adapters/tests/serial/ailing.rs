@@ -6,16 +6,16 @@ use crate::{HASTY, apply};
 use fsct_adapters::{Dut, DutError, Seen, connect};
 use rstest::rstest;
 
-const BATCHES: u8 = 24;
+const BATCHES: u8 = 20;
 
 #[rstest]
 #[case::healthy(Ailment::default())]
 #[case::loses(Ailment { lost: 4, ..Ailment::default() })]
 #[case::repeats(Ailment { repeated: 4, ..Ailment::default() })]
 #[case::changes(Ailment { changed: 4, ..Ailment::default() })]
-#[case::holds_back(Ailment { held: 8, ..Ailment::default() })]
+#[case::holds_back(Ailment { held: 4, ..Ailment::default() })]
 #[case::is_noisy(Ailment { noise: 8, ..Ailment::default() })]
-#[case::has_everything(Ailment { lost: 1, repeated: 1, changed: 1, held: 2, noise: 50 })]
+#[case::has_everything(Ailment { lost: 1, repeated: 1, changed: 1, held: 2, noise: 40 })]
 fn no_answer_is_wrong_and_no_dut_is_blamed(#[case] ailment: Ailment) {
     let (port, path) = line();
     ailing_board(port, ailment, 0x10_11_15);
