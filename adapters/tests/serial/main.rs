@@ -15,6 +15,7 @@ use fsct_adapters::frame::encode;
 use fsct_adapters::message::*;
 use fsct_adapters::{Dut, DutError, Fault, Observation, Seen, Stimulus, connect};
 use rstest::rstest;
+use std::io::Write;
 use std::time::Duration;
 
 /// Time-outs of a board that never answers, and of one that does.
@@ -58,15 +59,11 @@ fn what_is_no_frame_costs_nothing_but_itself(#[case] noise: &'static [u8]) {
 
 #[test]
 fn what_came_before_the_connection_is_forgotten() {
-    let (port, path) = line();
-    let board = board(port, |board| {
-        // More than anybody calls a connection.
-        board.raw(&[b'y'; 3_000]);
-        let hello = board.next();
-        board.describe(&hello);
-    });
-    assert_eq!(connect(&address(&path, LENIENT)).unwrap().hello(), Ok(description()));
-    board.join().unwrap();
+    let (mut port, path) = line();
+    port.write_all(&[b'y'; 3_000]).unwrap();
+    // The board is silent now: it is that and not garbage that the connection fails of.
+    let error = connect(&address(&path, HASTY)).unwrap().hello().unwrap_err();
+    assert_eq!(error, DutError::Timeout { after: Duration::from_millis(250) });
 }
 
 #[test]
@@ -156,7 +153,7 @@ fn a_board_that_dribbles_is_a_line_that_fails() {
 #[test]
 fn a_board_that_babbles_without_end_is_a_line_that_fails() {
     let (port, path) = line();
-    board(port, |board| while std::io::Write::write(&mut board.port, &[b'y'; 1000]).is_ok() {});
+    board(port, |board| while board.port.write(&[b'y'; 1000]).is_ok() {});
     let error = connect(&address(&path, LENIENT)).unwrap().hello().unwrap_err();
     assert_eq!(error.fault(), Fault::Rig);
     assert!(error.to_string().ends_with("; are cable and baud rate right?"), "{error}");

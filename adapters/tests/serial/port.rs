@@ -3,8 +3,10 @@
 use crate::board::*;
 use crate::common::*;
 use crate::{HASTY, LENIENT, apply, power};
+use fsct_adapters::message::OBSERVED;
 use fsct_adapters::{Dut, DutError, Fault, connect};
 use serialport::{SerialPort, TTYPort};
+use std::io::Write;
 use std::os::unix::fs::symlink;
 use std::path::PathBuf;
 use std::thread;
@@ -54,13 +56,14 @@ fn an_absent_port_is_waited_for_and_no_longer() {
                     running and the address right?";
     assert_eq!(error, expected);
     let link = Link::new("absent");
-    let address = address(link.path(), "wait=60s");
-    let connecting = thread::spawn(move || connect(&address).unwrap().hello());
-    let board = board(link.plug(), |board| {
+    let (port, path) = line();
+    let board = board(port, |board| {
         let hello = board.next();
         board.describe(&hello);
     });
-    assert_eq!(connecting.join().unwrap(), Ok(description()));
+    // The reset returns at once and takes effect later.
+    let options = format!("{LENIENT}&wait=60s&reset-command=sh -c '(sleep 0.2; ln -s {path} {}) &'", link.path());
+    assert_eq!(connect(&address(link.path(), &options)).unwrap().hello(), Ok(description()));
     board.join().unwrap();
 }
 
@@ -83,23 +86,25 @@ fn a_port_in_use_is_refused_and_free_as_soon_as_the_connection_ends() {
 
 /// The reading thread has more to hand over than anybody will take when the connection ends.
 #[test]
-fn a_port_is_free_again_while_the_board_still_babbles() {
+fn a_port_is_free_again_when_a_babbling_board_has_been_given_up() {
     let (port, path) = line();
-    let (let_go, wait) = std::sync::mpsc::channel();
-    let board = board(port, move |board| {
+    let board = board(port, |board| {
         let hello = board.next();
         board.describe(&hello);
-        board.port.set_timeout(Duration::from_millis(1)).unwrap();
-        while wait.try_recv().is_err() {
-            let _ = std::io::Write::write(&mut board.port, &[b'y'; 1000]);
-        }
+        board.send(OBSERVED, hello.sequence, &[0]);
+        // Until nothing on the way to the harness takes any more.
+        board.port.set_timeout(Duration::from_millis(100)).unwrap();
+        while board.port.write(&[b'y'; 1000]).is_ok() {}
     });
     let mut first = connect(&address(&path, LENIENT)).unwrap();
     first.hello().unwrap();
-    drop(first);
+    let port = board.join().unwrap();
+    let error = apply(first.as_mut(), &power()).unwrap_err();
+    assert!(matches!(error, DutError::Contract { .. }), "{error:?}");
+    // The first is still there, and of no further use.
     drop(connect(&address(&path, "wait=1ms")).unwrap());
-    let_go.send(()).unwrap();
-    board.join().unwrap();
+    assert_eq!(apply(first.as_mut(), &power()), Err(error));
+    drop(port);
 }
 
 #[test]
