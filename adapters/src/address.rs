@@ -7,7 +7,9 @@
 //! | `lib:PATH[?timeout=500ms]` | a shared library, in a child process |
 //! | `tcp://HOST:PORT[?timeout=500ms]` | a socket |
 //! | `unix:PATH[?timeout=500ms]` | a local socket |
+//! | `serial:PATH[?baud=115200&..]` | a board behind a serial line, see [`SerialOptions`] |
 
+use crate::SerialOptions;
 use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -53,6 +55,13 @@ pub enum Address {
         /// Time-out of each answer.
         timeout: Option<Duration>,
     },
+    /// A board behind a serial line.
+    Serial {
+        /// Path or name of the port, without `?`.
+        path: PathBuf,
+        /// How to use it.
+        options: SerialOptions,
+    },
 }
 
 /// A text that is no address. Each message is one sentence and quotes what was given.
@@ -60,19 +69,13 @@ pub enum Address {
 pub enum AddressError {
     /// It begins with no known scheme.
     #[error(
-        "{given:?} begins with no way to reach a DUT (inproc:, lib:, exec:, tcp:// or unix:), did you mean {nearest}?"
+        "{given:?} begins with no way to reach a DUT (inproc:, lib:, exec:, tcp://, unix: or serial:), did you mean {nearest}?"
     )]
     UnknownScheme {
         /// The address.
         given: String,
         /// The known scheme most like its beginning.
         nearest: &'static str,
-    },
-    /// A scheme that is known and not served.
-    #[error("{scheme} is not in this version; the ways to reach a DUT are inproc:, lib:, exec:, tcp:// and unix:")]
-    NotInThisVersion {
-        /// The scheme.
-        scheme: &'static str,
     },
     /// A part that has to be there.
     #[error("{given:?} lacks {what}")]
@@ -101,6 +104,26 @@ pub enum AddressError {
     Option {
         /// The option.
         option: String,
+    },
+    /// An option a serial line does not have.
+    #[error("{option:?} is no option of a serial line, which has baud, flow, reset, reset-command, wait and timeout")]
+    SerialUnknown {
+        /// The option.
+        option: String,
+    },
+    /// An option of a serial line that is given once more.
+    #[error("{option:?} is one option too many, a serial line takes each once and one way to reset")]
+    SerialTwice {
+        /// The option.
+        option: String,
+    },
+    /// An option of a serial line that cannot be made use of.
+    #[error("{option:?} is not usable, write {meant}")]
+    Serial {
+        /// The option.
+        option: String,
+        /// What can be written.
+        meant: &'static str,
     },
     /// A time-out that is none.
     #[error("{given:?} is no time-out; write it as 500ms or 2s, from 1ms to {MAX_TIMEOUT_S}s")]
@@ -160,12 +183,18 @@ impl FromStr for Address {
                 }
                 Ok(Address::Lib { path: PathBuf::from(path), timeout: timeout(query)? })
             }
-            Some((scheme, _)) => Err(AddressError::NotInThisVersion { scheme }),
-            None => {
+            Some(("serial:", rest)) => {
+                let (path, query) = rest.split_once('?').map_or((rest, None), |(path, query)| (path, Some(query)));
+                if path.is_empty() {
+                    return Err(missing("the path of a port"));
+                }
+                let options = query.map(SerialOptions::parse).transpose()?.unwrap_or_default();
+                Ok(Address::Serial { path: PathBuf::from(path), options })
+            }
+            _ => {
                 let begin = text.split_inclusive("//").next().unwrap_or_default();
                 let begin = begin.split_inclusive(':').next().filter(|_| !begin.ends_with("//")).unwrap_or(begin);
-                let served = SCHEMES.into_iter().take(5);
-                let nearest = served.min_by_key(|scheme| strsim::damerau_levenshtein(begin, scheme));
+                let nearest = SCHEMES.into_iter().min_by_key(|scheme| strsim::damerau_levenshtein(begin, scheme));
                 Err(AddressError::UnknownScheme { given: text.to_owned(), nearest: nearest.unwrap_or_default() })
             }
         }
@@ -200,6 +229,7 @@ impl fmt::Display for Address {
                 write!(f, "unix:{}", path.display())?;
                 write_timeout(f, *timeout)
             }
+            Address::Serial { path, options } => write!(f, "serial:{}{options}", path.display()),
         }
     }
 }
@@ -232,7 +262,7 @@ fn timeout(query: Query) -> Result<Option<Duration>, AddressError> {
     Ok(timeout)
 }
 
-fn duration(text: &str) -> Option<Duration> {
+pub(crate) fn duration(text: &str) -> Option<Duration> {
     let (number, unit) = match text.strip_suffix("ms") {
         Some(number) => (number, Duration::from_millis as fn(u64) -> Duration),
         None => (text.strip_suffix('s')?, Duration::from_secs as fn(u64) -> Duration),
@@ -242,7 +272,7 @@ fn duration(text: &str) -> Option<Duration> {
 }
 
 /// Splits at blanks; what stands between `'` or between `"` is taken as it is. The fault is a mark without partner.
-fn split_words(text: &str) -> Result<Vec<String>, char> {
+pub(crate) fn split_words(text: &str) -> Result<Vec<String>, char> {
     let mut words = Vec::new();
     let mut word: Option<String> = None;
     let mut inside = None;
@@ -263,7 +293,7 @@ fn split_words(text: &str) -> Result<Vec<String>, char> {
 }
 
 /// The word so that [`split_words`] gives it back.
-fn quoted(word: &str) -> String {
+pub(crate) fn quoted(word: &str) -> String {
     if !word.is_empty() && !word.contains(|letter: char| letter.is_ascii_whitespace() || "'\"".contains(letter)) {
         return word.to_owned();
     }

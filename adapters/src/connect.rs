@@ -1,6 +1,7 @@
 //! From an address to a connected DUT.
 
 use crate::process::Process;
+use crate::serial;
 use crate::socket::Socket;
 use crate::stream::REPLY_TIMEOUT;
 use crate::{Address, Dut, DutError, StreamDut};
@@ -35,6 +36,10 @@ pub fn connect_within(address: &Address, reply: Duration) -> Result<Box<dyn Dut>
         Address::Exec { program, args } => {
             let (reader, writer, process) = Process::start(program, args).map_err(unreachable)?;
             Ok(Box::new(StreamDut::new(reader, writer, Box::new(process), reply)))
+        }
+        Address::Serial { path, options } => {
+            let dut = serial::connect(path, options, options.timeout.unwrap_or(reply)).map_err(unreachable)?;
+            Ok(Box::new(dut))
         }
         Address::Tcp { timeout, .. } | Address::Unix { timeout, .. } => {
             let socket = open(address).map_err(unreachable)?;

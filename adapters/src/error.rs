@@ -7,7 +7,7 @@ use std::time::Duration;
 pub enum Fault {
     /// The DUT was reached and broke the contract.
     Dut,
-    /// The DUT could not be reached: cable, port, path, permission.
+    /// The DUT could not be reached, or not any more: cable, port, path, permission.
     Rig,
 }
 
@@ -40,6 +40,17 @@ pub enum DutError {
         /// What was wrong, with position where known.
         what: String,
     },
+    /// The line between lost the answer, or itself.
+    ///
+    /// On a line that can lose and change octets, octets that are no message are no evidence against a DUT: a bad cable
+    /// makes the same of a right answer. Nor is a port that goes away. What only a DUT can have made, a whole frame
+    /// with the right CRC, is judged as everywhere. Silence stays [`DutError::Timeout`], which blames nobody: a request
+    /// lost and a DUT that hangs look alike.
+    #[error("the serial line failed: {what}; are cable and baud rate right?")]
+    Line {
+        /// What was seen of it.
+        what: String,
+    },
     /// Another version of the frame protocol.
     #[error("the DUT speaks version {theirs} of the frame protocol, this fsct speaks {ours}")]
     Version {
@@ -66,7 +77,7 @@ impl DutError {
     /// Who has to look for the cause.
     pub fn fault(&self) -> Fault {
         match self {
-            DutError::Unreachable { .. } => Fault::Rig,
+            DutError::Unreachable { .. } | DutError::Line { .. } => Fault::Rig,
             _ => Fault::Dut,
         }
     }

@@ -150,6 +150,18 @@ impl Decoder {
         None
     }
 
+    /// As [`Decoder::next_frame`], when nothing came for so long that an unfinished frame will not be finished: what
+    /// only looked like the beginning of one is skipped, and the octets behind it are searched.
+    pub fn next_frame_after_silence(&mut self) -> Option<Frame> {
+        loop {
+            let frame = self.next_frame();
+            if frame.is_some() || self.done >= self.buffer.len() || self.garbage.is_too_much() {
+                return frame;
+            }
+            self.skip(1);
+        }
+    }
+
     /// What has been skipped since the latest frame.
     pub fn garbage(&self) -> &Garbage {
         &self.garbage

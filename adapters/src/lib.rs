@@ -1,6 +1,6 @@
 //! The contract with a device under test and every way to reach one.
 //!
-//! This crate moves octets. It knows frames, processes and sockets; it does not know what an SPDU is.
+//! This crate moves octets. It knows frames, processes, sockets and serial lines; it does not know what an SPDU is.
 //!
 //! ```no_run
 //! use fsct_adapters::{Address, Dut, connect};
@@ -22,6 +22,7 @@ mod listener;
 pub mod message;
 mod process;
 mod recorder;
+mod serial;
 mod serve;
 mod socket;
 mod stream;
@@ -38,5 +39,6 @@ pub use latency::{Latency, MADE_UP};
 pub use library::{Library, frames_apart};
 pub use listener::{ListenError, Listener, Stop};
 pub use recorder::{Answer, Entry, Happened, Keep, Recorder, Recording};
+pub use serial::{Flow, Reset, SerialOptions, WAIT};
 pub use serve::{MAX_CONNECTIONS, serve, serve_stream};
 pub use stream::{FLOOD_PER_STIMULUS, FLOOD_SLACK, Peer, REPLY_TIMEOUT, StreamDut};

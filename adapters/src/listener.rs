@@ -1,6 +1,10 @@
 //! Where a DUT waits for a harness.
 
 use crate::Address;
+#[cfg(unix)]
+use crate::SerialOptions;
+#[cfg(unix)]
+use crate::serial::pty::Pty;
 use crate::socket::Socket;
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, TcpListener, TcpStream, ToSocketAddrs};
@@ -44,6 +48,8 @@ pub(crate) enum Place {
     Tcp(TcpListener),
     #[cfg(unix)]
     Unix(UnixListener, PathBuf),
+    #[cfg(unix)]
+    Pty(Pty),
     Stdio,
 }
 
@@ -108,6 +114,15 @@ impl Listener {
         Listener { place: Place::Stdio, shared: Arc::default() }
     }
 
+    /// A pseudo-terminal, reached as a serial line. It serves one harness after the other.
+    ///
+    /// # Errors
+    /// What the system says.
+    #[cfg(unix)]
+    pub fn pty() -> io::Result<Listener> {
+        Ok(Listener { place: Place::Pty(Pty::open()?), shared: Arc::default() })
+    }
+
     /// The address a harness can connect to, with the port really used.
     ///
     /// # Errors
@@ -120,6 +135,8 @@ impl Listener {
             }
             #[cfg(unix)]
             Place::Unix(_, path) => Ok(Address::Unix { path: path.clone(), timeout: None }),
+            #[cfg(unix)]
+            Place::Pty(pty) => Ok(Address::Serial { path: pty.path().to_owned(), options: SerialOptions::default() }),
             Place::Stdio => Err(io::Error::new(io::ErrorKind::Unsupported, "standard input has no address")),
         }
     }
@@ -133,6 +150,9 @@ impl Listener {
             Place::Tcp(listener) => Wake::Tcp(reachable(listener.local_addr()?)),
             #[cfg(unix)]
             Place::Unix(_, path) => Wake::Unix(path.clone()),
+            // It looks up by itself.
+            #[cfg(unix)]
+            Place::Pty(_) => Wake::Nothing,
             Place::Stdio => Wake::Nothing,
         };
         Ok(Stop { shared: Arc::clone(&self.shared), wake })

@@ -7,10 +7,12 @@ use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// How long a process may take to end by itself once its standard input has ended.
 const GRACE: Duration = Duration::from_millis(200);
+/// How often it is looked whether a process has ended.
+const LOOK: Duration = Duration::from_millis(5);
 /// Octets of standard error kept.
 const KEPT: usize = 4096;
 /// Letters of the last line that are shown.
@@ -55,6 +57,11 @@ impl Process {
             Ok(status) => status.to_string(),
             Err(error) => error.to_string(),
         };
+        self.with_last_words(&status)
+    }
+
+    /// How it ended, as [`Peer::close`] says it.
+    fn with_last_words(&self, status: &str) -> String {
         match self.last_line() {
             Some(line) => format!(" ({status}, its last words \"{line}\")"),
             None => format!(" ({status})"),
@@ -97,6 +104,30 @@ impl Drop for Process {
     fn drop(&mut self) {
         self.close();
     }
+}
+
+/// Runs a program to its end, which has to come in time and to be a success; the error says how it ended. What it leaves
+/// running is its own matter.
+pub(crate) fn run(program: &str, args: &[String], within: Duration) -> io::Result<()> {
+    let (mut stdout, stdin, mut process) = Process::start(program, args)?;
+    drop(stdin);
+    thread::spawn(move || io::copy(&mut stdout, &mut io::sink()));
+    let begin = Instant::now();
+    while begin.elapsed() < within {
+        match process.child.try_wait()? {
+            None => thread::sleep(LOOK),
+            Some(status) => {
+                // Nobody waits for it any more, so nobody may end it either.
+                process.how = Some(String::new());
+                if status.success() {
+                    return Ok(());
+                }
+                let _ = process.stderr.recv_timeout(GRACE);
+                return Err(io::Error::other(process.with_last_words(&status.to_string()).trim().to_owned()));
+            }
+        }
+    }
+    Err(io::Error::new(io::ErrorKind::TimedOut, process.close().trim().to_owned()))
 }
 
 /// Reads to the end and keeps the latest octets. `_ended` says by its end that there will be no more.

@@ -32,10 +32,13 @@ pub fn serve(listener: &Listener, make: &(dyn Fn() -> Box<dyn Dut> + Sync)) -> i
         }),
         #[cfg(unix)]
         Place::Unix(listener, _) => listener.accept().map(|(stream, _)| Socket::Unix(stream)),
-        Place::Stdio => Err(io::Error::from(ErrorKind::Unsupported)),
+        _ => Err(io::Error::from(ErrorKind::Unsupported)),
     };
-    if matches!(listener.place, Place::Stdio) {
-        return serve_stream(io::stdin().lock(), io::stdout().lock(), make());
+    match &listener.place {
+        Place::Stdio => return serve_stream(io::stdin().lock(), io::stdout().lock(), make()),
+        #[cfg(unix)]
+        Place::Pty(pty) => return pty.serve(&listener.shared, make),
+        _ => {}
     }
     thread::scope(|scope| {
         loop {
@@ -70,7 +73,8 @@ pub fn serve(listener: &Listener, make: &(dyn Fn() -> Box<dyn Dut> + Sync)) -> i
 }
 
 /// Serves one DUT over a pair of streams until the harness ends the connection, or sends so much garbage that it is
-/// none.
+/// none. A line that can lose octets says by an error of the kind `TimedOut` that none came for a while: an unfinished
+/// frame is forgotten then.
 ///
 /// # Errors
 /// What the system says when the streams break.
@@ -79,14 +83,18 @@ pub fn serve_stream(mut reader: impl Read, mut writer: impl Write, dut: Box<dyn 
     let mut decoder = Decoder::new();
     let mut buffer = vec![0; CHUNK];
     loop {
-        let chunk = match reader.read(&mut buffer) {
+        let silence = match reader.read(&mut buffer) {
             Ok(0) => return Ok(()),
-            Ok(count) => buffer.get(..count).unwrap_or_default(),
+            Ok(count) => {
+                decoder.push(buffer.get(..count).unwrap_or_default());
+                false
+            }
             Err(error) if error.kind() == ErrorKind::Interrupted => continue,
+            Err(error) if error.kind() == ErrorKind::TimedOut => true,
             Err(error) => return Err(error),
         };
-        decoder.push(chunk);
-        while let Some(frame) = decoder.next_frame() {
+        let next = if silence { Decoder::next_frame_after_silence } else { Decoder::next_frame };
+        while let Some(frame) = next(&mut decoder) {
             conversation.take(&frame);
             writer.write_all(&conversation.out)?;
             conversation.out.clear();

@@ -13,6 +13,7 @@ use crate::{Description, Dut, DutError, MAX_BATCH, Observation, Stimulus};
 use answers::Answers;
 pub use answers::{FLOOD_PER_STIMULUS, FLOOD_SLACK};
 use std::collections::VecDeque;
+use std::hash::{BuildHasher, Hasher, RandomState};
 use std::io::{self, ErrorKind, Read, Write};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, channel, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -28,6 +29,10 @@ const MAX_REQUESTS: usize = 8;
 const CHUNK: usize = 1 << 16;
 /// A request of so many octets is written at once when nothing is unanswered: any stream takes it whole.
 const SHORT: usize = 2_048;
+/// On a line that can lose octets an unfinished frame is forgotten when nothing came for so long.
+pub(crate) const LINE_SILENCE: Duration = Duration::from_millis(200);
+/// How often hello is said on such a line before nobody counts as being there.
+const HELLOS: usize = 3;
 /// Pieces waiting between the reading thread and the user.
 const CHUNKS: usize = 4;
 
@@ -56,6 +61,10 @@ pub struct StreamDut {
     payload: Vec<u8>,
     scratch: Vec<Observation>,
     failed: Option<DutError>,
+    /// What one octet takes on a line that can lose some; `None`: a stream that loses nothing.
+    line: Option<Duration>,
+    /// What the requests sent since the latest answer take on that line.
+    under_way: Duration,
 }
 
 /// A request without answer so far: its stimuli are `first..first + count` of the batch.
@@ -91,7 +100,31 @@ impl StreamDut {
             payload: Vec::new(),
             scratch: Vec::new(),
             failed: None,
+            line: None,
+            under_way: Duration::ZERO,
         }
+    }
+
+    /// As [`StreamDut::new`], over a line that can lose, change and repeat octets, and on which each takes this long.
+    /// The time the octets themselves take does not count as the DUT's.
+    ///
+    /// - An unfinished frame is forgotten after 200 ms of silence, and what it swallowed is searched for frames.
+    /// - Hello is said three times before the DUT counts as absent; to answer it twice does no harm. Answers to anything
+    ///   else, left from a connection before, are skipped until then. They cannot come later, for a DUT answers in order.
+    /// - Stimuli are never repeated: what a lost answer leaves unknown is whether they were carried out. So the first
+    ///   loss ends the connection.
+    pub fn on_line(
+        reader: impl Read + Send + 'static,
+        writer: impl Write + Send + 'static,
+        peer: Box<dyn Peer>,
+        timeout: Duration,
+        octet: Duration,
+    ) -> StreamDut {
+        let mut dut = StreamDut::new(reader, writer, peer, timeout);
+        dut.line = Some(octet);
+        // Another one than in the connection before, most likely, whoever made it.
+        dut.sequence = RandomState::new().build_hasher().finish() as u8;
+        dut
     }
 
     /// Does something unless the connection has failed before, and ends the connection when it fails now.
@@ -108,6 +141,10 @@ impl StreamDut {
     fn hang_up(&mut self) -> String {
         self.requests = None;
         self.writer = None;
+        if self.line.is_some() {
+            // The port has to be let go of, and so a reading thread that has something to hand over gives up.
+            self.chunks = channel().1;
+        }
         self.peer.close()
     }
 
@@ -117,9 +154,10 @@ impl StreamDut {
         self.sequence = sequence.wrapping_add(1);
         let octets =
             frame::encode(kind, sequence, payload).ok_or_else(|| too_long(payload.len(), frame::MAX_PAYLOAD))?;
+        self.under_way += self.line.map_or(Duration::ZERO, |octet| octet * octets.len() as u32);
         // A stream that takes no more shows as an end of the other direction, or as silence.
         match (&self.writer, &self.requests) {
-            (Some(writer), _) if alone && octets.len() <= SHORT => {
+            (Some(writer), _) if alone && octets.len() <= SHORT && self.line.is_none() => {
                 let _ = write(writer, &octets);
             }
             (_, Some(requests)) => {
@@ -132,43 +170,64 @@ impl StreamDut {
 
     /// The answer to the request with this sequence number.
     fn answer(&mut self, kind: u8, sequence: u8) -> Result<Vec<u8>, DutError> {
-        let frame = self.receive()?;
-        let contract = |what| Err(DutError::Contract { what });
-        match frame.kind {
-            message::ERROR => contract(format!("it reported {:?}", message::unpack_error(&frame.payload))),
-            message::DESCRIPTION | message::OBSERVED if frame.kind != kind => {
-                contract(format!("it answered message {:02X} where {kind:02X} is due", frame.kind))
+        expect(self.receive()?, kind, sequence)
+    }
+
+    /// The answer to this hello.
+    fn greeting(&mut self, sequence: u8) -> Result<Vec<u8>, DutError> {
+        let begin = Instant::now();
+        loop {
+            let frame = self.receive()?;
+            let stale = match frame.kind {
+                message::OBSERVED => true,
+                message::DESCRIPTION | message::ERROR => frame.sequence != sequence,
+                _ => false,
+            };
+            if self.line.is_none() || !stale {
+                return expect(frame, message::DESCRIPTION, sequence);
             }
-            message::DESCRIPTION | message::OBSERVED if frame.sequence != sequence => {
-                contract(format!("it answered sequence number {} where {sequence} is due", frame.sequence))
+            if begin.elapsed() > self.timeout {
+                return Err(DutError::Timeout { after: self.timeout });
             }
-            message::DESCRIPTION | message::OBSERVED => Ok(frame.payload),
-            message::HELLO | message::APPLY => {
-                Err(DutError::Garbage { what: format!("message {:02X}, which only a harness sends", frame.kind) })
-            }
-            unknown => Err(DutError::Garbage { what: format!("unknown message {unknown:02X}") }),
         }
     }
 
     fn receive(&mut self) -> Result<Frame, DutError> {
         let begin = Instant::now();
+        let mut allowed = self.timeout + std::mem::take(&mut self.under_way);
         loop {
             if let Some(frame) = self.decoder.next_frame() {
                 return Ok(frame);
             }
             if self.decoder.garbage().is_too_much() {
-                return Err(DutError::Garbage { what: self.decoder.garbage().to_string() });
+                return Err(self.no_frame(self.decoder.garbage().to_string()));
             }
-            match self.chunks.recv_timeout(self.timeout.saturating_sub(begin.elapsed())) {
-                Ok(chunk) => self.decoder.push(&chunk),
+            let left = allowed.saturating_sub(begin.elapsed());
+            let wait = self.line.map_or(left, |_| left.min(LINE_SILENCE));
+            match self.chunks.recv_timeout(wait) {
+                Ok(chunk) => {
+                    allowed += self.line.map_or(Duration::ZERO, |octet| octet * chunk.len() as u32);
+                    self.decoder.push(&chunk);
+                }
                 Err(RecvTimeoutError::Timeout) => {
-                    let after = self.timeout;
-                    return Err(self.ended(DutError::Timeout { after }, &format!("then nothing within {after:?}")));
+                    if self.line.is_some()
+                        && let Some(frame) = self.decoder.next_frame_after_silence()
+                    {
+                        return Ok(frame);
+                    }
+                    if wait == left {
+                        let after = self.timeout;
+                        return Err(self.ended(DutError::Timeout { after }, &format!("then nothing within {after:?}")));
+                    }
                 }
                 Err(RecvTimeoutError::Disconnected) => {
                     let how = self.hang_up();
                     let then = format!("then the end of the connection{how}");
-                    return Err(self.ended(DutError::Closed { how }, &then));
+                    let error = match self.line {
+                        Some(_) => DutError::Line { what: "the port is gone".to_owned() },
+                        None => DutError::Closed { how },
+                    };
+                    return Err(self.ended(error, &then));
                 }
             }
         }
@@ -177,12 +236,26 @@ impl StreamDut {
     /// Why no more frames came: what came instead says more than that they did not come.
     fn ended(&self, error: DutError, then: &str) -> DutError {
         let garbage = self.decoder.garbage();
-        if garbage.is_empty() { error } else { DutError::Garbage { what: format!("{garbage}, {then}") } }
+        if garbage.is_empty() { error } else { self.no_frame(format!("{garbage}, {then}")) }
+    }
+
+    /// Octets came that are no frame.
+    fn no_frame(&self, what: String) -> DutError {
+        match self.line {
+            Some(_) => DutError::Line { what },
+            None => DutError::Garbage { what },
+        }
     }
 
     fn describe(&mut self) -> Result<Description, DutError> {
-        let sequence = self.send(message::HELLO, &Hello::OURS.pack(), true)?;
-        let payload = self.answer(message::DESCRIPTION, sequence)?;
+        let mut repeats = if self.line.is_some() { 1..HELLOS } else { 1..1 };
+        let payload = loop {
+            let sequence = self.send(message::HELLO, &Hello::OURS.pack(), true)?;
+            match self.greeting(sequence) {
+                Err(DutError::Timeout { .. } | DutError::Line { .. }) if repeats.next().is_some() => {}
+                outcome => break outcome?,
+            }
+        };
         match message::unpack_description(&payload).map_err(malformed)? {
             Described::Foreign(theirs) => Err(DutError::Version { theirs, ours: message::VERSION }),
             Described::As(description, limits) => {
@@ -267,6 +340,25 @@ impl Dut for StreamDut {
 impl Drop for StreamDut {
     fn drop(&mut self) {
         self.hang_up();
+    }
+}
+
+/// The payload of a frame that has to be this answer.
+fn expect(frame: Frame, kind: u8, sequence: u8) -> Result<Vec<u8>, DutError> {
+    let contract = |what| Err(DutError::Contract { what });
+    match frame.kind {
+        message::ERROR => contract(format!("it reported {:?}", message::unpack_error(&frame.payload))),
+        message::DESCRIPTION | message::OBSERVED if frame.kind != kind => {
+            contract(format!("it answered message {:02X} where {kind:02X} is due", frame.kind))
+        }
+        message::DESCRIPTION | message::OBSERVED if frame.sequence != sequence => {
+            contract(format!("it answered sequence number {} where {sequence} is due", frame.sequence))
+        }
+        message::DESCRIPTION | message::OBSERVED => Ok(frame.payload),
+        message::HELLO | message::APPLY => {
+            Err(DutError::Garbage { what: format!("message {:02X}, which only a harness sends", frame.kind) })
+        }
+        unknown => Err(DutError::Garbage { what: format!("unknown message {unknown:02X}") }),
     }
 }
 

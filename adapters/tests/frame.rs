@@ -140,3 +140,21 @@ proptest! {
         prop_assert_eq!(decode(&[&octets]), []);
     }
 }
+
+#[test]
+fn after_a_silence_what_looked_like_a_frame_is_searched_for_frames() {
+    let frame = Frame { kind: 1, sequence: 2, payload: vec![3; 9] };
+    let whole = encode(1, 2, &[3; 9]).unwrap();
+    let trap = [0xF5, 0xC7, 0x82, 0, 0xFF, 0xFF];
+    let mut decoder = Decoder::new();
+    decoder.push(&[&trap[..], &whole, &trap[..4], &whole[..8]].concat());
+    assert_eq!(decoder.next_frame(), None);
+    assert_eq!(decoder.next_frame_after_silence(), Some(frame.clone()));
+    assert_eq!(decoder.garbage().skipped, 0);
+    assert_eq!(decoder.next_frame_after_silence(), None);
+    assert_eq!(decoder.garbage().skipped, 12);
+    // Nothing of it is left in the way of the next.
+    decoder.push(&whole);
+    assert_eq!(decoder.next_frame(), Some(frame));
+    assert_eq!(decoder.next_frame_after_silence(), None);
+}

@@ -13,7 +13,8 @@ use fsct_adapters::{
 use proptest::collection::vec;
 use proptest::prelude::*;
 use rstest::rstest;
-use std::io::{Read, Write};
+use std::collections::VecDeque;
+use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
 
 fn socket_path(name: &str) -> std::path::PathBuf {
@@ -216,6 +217,32 @@ fn a_harness_that_babbles_or_leaves_harms_nobody() {
     leaving.write_all(&request(HELLO, 0, &[1, 1])[..5]).unwrap();
     drop(leaving);
     assert_eq!(connect(&server.address).unwrap().hello(), Ok(description()));
+}
+
+/// A line on which these pieces come with silence between them.
+struct Wire(VecDeque<Vec<u8>>, bool);
+
+impl Read for Wire {
+    fn read(&mut self, octets: &mut [u8]) -> std::io::Result<usize> {
+        self.1 = !self.1;
+        if self.1 {
+            return Err(ErrorKind::TimedOut.into());
+        }
+        let piece = self.0.pop_front().unwrap_or_default();
+        octets[..piece.len()].copy_from_slice(&piece);
+        Ok(piece.len())
+    }
+}
+
+#[test]
+fn on_a_line_an_unfinished_request_is_forgotten_and_what_it_swallowed_is_answered() {
+    let hello = request(HELLO, 1, &Hello::OURS.pack());
+    let pieces = [hello[..7].to_vec(), [&[0xF5, 0xC7, APPLY, 9, 0xFF, 0xFF][..], &hello].concat(), hello.clone()];
+    let mut output = Vec::new();
+    serve_stream(Wire(pieces.into(), false), &mut output, Box::<Mirror>::default()).unwrap();
+    let mut decoder = Decoder::new();
+    decoder.push(&output);
+    assert_eq!(std::iter::from_fn(|| decoder.next_frame()).filter(|frame| frame.kind == DESCRIPTION).count(), 2);
 }
 
 #[test]

@@ -8,27 +8,36 @@ use crate::plan::{Plan, Planned};
 use crate::profile::Profile;
 use crate::session::Session;
 use crate::tester::Tester;
-use fsct_adapters::{Description, Dut, DutError, MADE_UP, Observation, Pco, Seen, Stimulus, Variant};
+use fsct_adapters::{
+    ClockKind, Description, Dut, DutError, Latency, MADE_UP, Observation, Pco, Seen, Stimulus, Variant,
+};
 use fsct_protocol::crc::Reading;
 use fsct_protocol::spdu::Port;
-use fsct_reports::record::{CaseRecord, DutInfo, Execution, Reason, RequirementRef, StepRecord, VariantInfo, Verdict};
+use fsct_reports::record::{
+    CaseRecord, DutInfo, Execution, LatencyInfo, Reason, RequirementRef, StepRecord, VariantInfo, Verdict,
+};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::SeedableRng;
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 /// After this many cases in a row before which the DUT was not reached or did not greet, the rest is not tried.
 const UNREACHED: usize = 3;
 /// After this many cases in a row in which the DUT was lost, the rest is not tried.
 const LOST: usize = 25;
+/// Round trips measured before the first case of a connection.
+const ROUND_TRIPS: usize = 32;
 
 /// A DUT that has said hello and passed the preflight.
 pub struct Bench {
     /// The connection.
     pub dut: Box<dyn Dut>,
-    /// What it says of itself.
+    /// What it says of itself; [`Bench::measure`] adds what the way to it is uncertain of.
     pub description: Description,
+    /// How long the way to it and back takes, where that was measured.
+    pub latency: Option<Latency>,
 }
 
 impl Bench {
@@ -41,13 +50,28 @@ impl Bench {
         let mut observed = Vec::new();
         dut.apply(&[Stimulus::Other { kind: MADE_UP, octets: vec![0x5A] }], &mut observed)?;
         match observed.as_slice() {
-            [Observation { seen: Seen::Unsupported, .. }] => Ok(Bench { dut, description }),
+            [Observation { seen: Seen::Unsupported, .. }] => Ok(Bench { dut, description, latency: None }),
             _ => Err(DutError::Contract {
                 what:
                     "a stimulus that does not exist was not answered `unsupported`, so its other answers mean nothing"
                         .to_owned(),
             }),
         }
+    }
+
+    /// Measures the way to the DUT and back. When its clock is real, what varies on that way adds to the uncertainty of
+    /// its time stamps: stimuli are paced by this program and meet the DUT that much sooner or later.
+    ///
+    /// # Errors
+    /// [`DutError`] when a round trip fails.
+    pub fn measure(mut self) -> Result<Bench, DutError> {
+        let latency = Latency::measure(self.dut.as_mut(), ROUND_TRIPS)?;
+        let clock = &mut self.description.clock;
+        if clock.kind == ClockKind::Real {
+            clock.uncertainty_ns = clock.uncertainty_ns.saturating_add(nanoseconds(latency.uncertainty()));
+        }
+        self.latency = Some(latency);
+        Ok(self)
     }
 
     /// Makes the DUT the variant a case needs, without supply.
@@ -157,7 +181,7 @@ impl Run<'_> {
         if setups.is_empty() {
             return (self.not_run(planned, Execution::DutError, "dut/contract", "the DUT has no ports"), false);
         }
-        let Bench { dut, description } = bench;
+        let Bench { dut, description, .. } = bench;
         let mut session = Session::new(dut.as_mut(), description, self.profile, setups, self.interrupted);
         let judging = Judging {
             clauses: self.clauses(planned),
@@ -349,8 +373,13 @@ fn hash(text: &str) -> u64 {
     text.bytes().fold(0xCBF2_9CE4_8422_2325, |hash, octet| (hash ^ u64::from(octet)).wrapping_mul(0x0100_0000_01B3))
 }
 
-/// What the DUT says of itself, for the record.
-pub fn dut_info(url: &str, profile: &Profile, description: &Description) -> DutInfo {
+pub(crate) fn nanoseconds(duration: Duration) -> u64 {
+    u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
+}
+
+/// What the DUT says of itself, and what was measured of the way to it, for the record.
+pub fn dut_info(url: &str, profile: &Profile, bench: &Bench) -> DutInfo {
+    let description = &bench.description;
     DutInfo {
         url: url.to_owned(),
         role: description.role.to_string(),
@@ -360,11 +389,17 @@ pub fn dut_info(url: &str, profile: &Profile, description: &Description) -> DutI
         version: description.version.clone(),
         pcos: description.pcos.iter().map(|pco| pco.name().to_owned()).collect(),
         clock: match description.clock.kind {
-            fsct_adapters::ClockKind::Virtual => "virtual".to_owned(),
-            fsct_adapters::ClockKind::Real => "real".to_owned(),
+            ClockKind::Virtual => "virtual".to_owned(),
+            ClockKind::Real => "real".to_owned(),
         },
         resolution_ns: description.clock.resolution_ns,
         uncertainty_ns: description.clock.uncertainty_ns,
+        round_trip: bench.latency.map(|latency| LatencyInfo {
+            min_ns: nanoseconds(latency.min),
+            median_ns: nanoseconds(latency.median),
+            p99_ns: nanoseconds(latency.p99),
+            max_ns: nanoseconds(latency.max),
+        }),
         offers: description
             .offers
             .iter()

@@ -574,6 +574,7 @@ struct Stopped;
 pub fn execution(error: &DutError) -> (Execution, &'static str) {
     match (error, error.fault()) {
         (DutError::Timeout { .. }, _) => (Execution::Timeout, "dut/timeout"),
+        (DutError::Line { .. }, _) => (Execution::RigError, "rig/line"),
         (_, Fault::Rig) => (Execution::RigError, "rig/unreachable"),
         _ => (Execution::DutError, "dut/contract"),
     }

@@ -151,6 +151,9 @@ fn facts_of(dut: &DutInfo) -> Markup {
             @if !dut.clock.is_empty() {
                 dt { "Served" } dd { (short(&dut.pcos.join(", "), 4 * NAME)) }
                 dt { "Clock" } dd { (name(&dut.clock)) ", resolution " (dut.resolution_ns) " ns, uncertainty ± " (dut.uncertainty_ns) " ns" }
+                @if let Some(trip) = dut.round_trip {
+                    dt { "Round trip" } dd { "median " (micro(trip.median_ns)) ", " (micro(trip.min_ns)) " to " (micro(trip.max_ns)) }
+                }
             }
             @if !dut.offers.is_empty() {
                 dt { "Offers" } dd { @for offer in dut.offers.iter().take(LISTED) { (name(offer)) br; } }
@@ -167,6 +170,11 @@ fn role(role: &str) -> String {
         "master" => "FS-Master".to_owned(),
         other => short(other, NAME),
     }
+}
+
+/// A short time in microseconds.
+fn micro(ns: u64) -> String {
+    format!("{} µs", ns / 1_000)
 }
 
 /// The transitions of every machine there is a DUT for, and what else a record may hold.

@@ -63,10 +63,26 @@ pub struct DutInfo {
     pub clock: String,
     /// Resolution of the clock in nanoseconds.
     pub resolution_ns: u64,
-    /// Uncertainty of a time stamp in nanoseconds.
+    /// Uncertainty of a time stamp in nanoseconds, that of the way to the DUT included where it was measured.
     pub uncertainty_ns: u64,
+    /// How long the way to it and back took, where that was measured: on a serial line.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub round_trip: Option<LatencyInfo>,
     /// What it can be configured as, one text an offer.
     pub offers: Vec<String>,
+}
+
+/// Round trips to a DUT, measured before the first case, in nanoseconds.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LatencyInfo {
+    /// The shortest.
+    pub min_ns: u64,
+    /// Half of them took no longer.
+    pub median_ns: u64,
+    /// 99 of 100 took no longer.
+    pub p99_ns: u64,
+    /// The longest.
+    pub max_ns: u64,
 }
 
 /// Conformance axis of a verdict, best first. Verdicts only worsen.

@@ -10,6 +10,9 @@ use fsct_reference::{
 use std::io;
 use std::path::Path;
 
+/// How often a line that loses octets is tried.
+const TRIES: usize = 3;
+
 /// What `inproc:` can reach.
 const IN_PROCESS: [&str; 8] = [
     "reference-device",
@@ -39,7 +42,10 @@ pub fn parse(text: &str) -> Result<Address, String> {
 /// # Errors
 /// [`DutError`] when the DUT is not reached or fails the preflight.
 pub fn connect(address: &Address) -> Result<Bench, DutError> {
-    Bench::greet(reach(address)?)
+    match address {
+        Address::Serial { .. } => connect_line(address),
+        address => Bench::greet(reach(address)?),
+    }
 }
 
 /// A fresh connection on which nothing has been said.
@@ -68,6 +74,21 @@ fn host(path: &Path) -> io::Result<Address> {
         program: text(&std::env::current_exe()?)?,
         args: vec![super::host::NAME.to_owned(), text(&path)?],
     })
+}
+
+/// As [`connect`], over a line that can lose octets, and measured: jitter is large there and not ours to forget. Nothing said
+/// until then makes a DUT do anything, so a loss costs another try. A DUT that does not say hello has been asked often
+/// enough.
+fn connect_line(address: &Address) -> Result<Bench, DutError> {
+    let mut repeats = 1..TRIES;
+    loop {
+        let mut dut = fsct_adapters::connect(address)?;
+        dut.hello()?;
+        match Bench::greet(dut).and_then(Bench::measure) {
+            Err(DutError::Timeout { .. } | DutError::Line { .. }) if repeats.next().is_some() => {}
+            outcome => return outcome,
+        }
+    }
 }
 
 fn in_process(name: &str, query: &[(String, String)]) -> Result<Box<dyn Dut>, String> {

@@ -3,7 +3,7 @@
 
 use super::run::{candidate_profile, given_profiles};
 use super::{Cases, RIG, USAGE, bench, fail, print, show};
-use crate::campaign::{Bench, dut_info};
+use crate::campaign::{Bench, dut_info, nanoseconds};
 use crate::library::Library;
 use crate::plan::{Selection, plan};
 use crate::profile::Profile;
@@ -82,7 +82,7 @@ fn execute(args: &Args) -> Result<u8, u8> {
         return Err(fail(USAGE, contradiction));
     }
     let diagnosis = Diagnosis {
-        dut: dut_info(&args.dut, profile, description),
+        dut: dut_info(&args.dut, profile, &bench),
         ports: description.ports,
         not_served: Pco::ALL.into_iter().filter(|pco| !description.pcos.contains(pco)).map(Pco::name).collect(),
         hello_ns: nanoseconds(hello),
@@ -208,8 +208,4 @@ fn tell(diagnosis: &Diagnosis, description: &Description, hello: Duration, laten
         row("suites", format!("{suites} more do not apply ({cases} cases): {term}"));
     }
     diagnosis.advice.iter().for_each(|text| row("advice", text.clone()));
-}
-
-fn nanoseconds(duration: Duration) -> u64 {
-    u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
 }

@@ -88,7 +88,7 @@ struct Candidate<'a> {
 impl Candidate<'_> {
     fn info(&self) -> DutInfo {
         match &self.first {
-            Ok(_) => dut_info(self.url, self.profile, &self.description),
+            Ok(bench) => dut_info(self.url, self.profile, bench),
             // Of a DUT that was not reached nothing is known but where it should be.
             Err(_) => DutInfo {
                 url: self.url.to_owned(),

@@ -9,7 +9,7 @@ use fsct_reference::{FsDevice, FsMaster, MasterOptions, Options};
 pub struct Args {
     /// What to be
     role: Role,
-    /// Where to be reached: tcp://HOST:PORT (port 0: any), unix:PATH or stdio
+    /// Where to be reached: tcp://HOST:PORT (port 0: any), unix:PATH, pty or stdio
     #[arg(long, value_name = "URL")]
     listen: String,
     /// Be wrong in this way
@@ -71,6 +71,10 @@ fn serve_on(args: &Args, what: &str, make: &(dyn Fn() -> Box<dyn Dut> + Sync)) -
 fn listen(place: &str) -> Result<Listener, String> {
     if place == "stdio" {
         return Ok(Listener::stdio());
+    }
+    #[cfg(unix)]
+    if place == "pty" {
+        return Listener::pty().map_err(|error| format!("there is no pseudo-terminal: {error}"));
     }
     let address: Address = place.parse().map_err(|error: AddressError| error.to_string())?;
     Listener::bind(&address).map_err(|error| error.to_string())

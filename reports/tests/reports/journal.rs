@@ -1,8 +1,8 @@
 //! Journals that are whole, cut off, damaged or foreign.
 
 use crate::common::*;
-use fsct_reports::record::Footer;
-use fsct_reports::{FILE, Journal, Reader, Run, Summary, read};
+use fsct_reports::record::{Footer, LatencyInfo};
+use fsct_reports::{FILE, Journal, Reader, Run, Summary, read, render};
 use rstest::rstest;
 
 #[rstest]
@@ -126,4 +126,22 @@ fn reading_ends_at_the_first_error() {
     let mut reader = Reader::open(&folder.0).expect("the header is sound");
     assert!(reader.next().is_some_and(|case| case.is_err()));
     assert!(reader.next().is_none());
+}
+
+#[test]
+fn a_measured_round_trip_is_shown_and_one_that_was_not_leaves_no_trace() {
+    let unmeasured = run(vec![passed(1)]);
+    let mut measured = unmeasured.clone();
+    let trip = LatencyInfo { min_ns: 900_000, median_ns: 1_100_000, p99_ns: 2_000_000, max_ns: 3_400_000 };
+    measured.header.duts[0].round_trip = Some(trip);
+    let written = |name: &str, run: &Run| {
+        let folder = Folder::with(name, run);
+        render(&folder.0).expect("the record is sound");
+        assert_eq!(read(&folder.0).expect("the record is sound").header, run.header);
+        (folder.text("run.jsonl"), folder.text("report.html"))
+    };
+    let (_, shown) = written("measured", &measured);
+    assert!(shown.contains("<dt>Round trip</dt><dd>median 1100 µs, 900 µs to 3400 µs</dd>"));
+    let (record, shown) = written("unmeasured", &unmeasured);
+    assert!(!record.contains("round_trip") && !shown.contains("Round trip"));
 }

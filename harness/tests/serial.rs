@@ -1,0 +1,139 @@
+//! The command over a serial line: `fsct simulate --listen pty` at one end, `fsct run --dut serial:..` at the other.
+#![cfg(unix)]
+
+use rstest::rstest;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::io::{BufRead, BufReader};
+use std::path::PathBuf;
+use std::process::{Child, Command, Stdio};
+use std::thread;
+use std::time::Duration;
+
+/// What the reference states of its time stamps when its clock is real.
+const OWN_UNCERTAINTY_NS: u64 = 100_000;
+
+fn fsct(args: &[&str]) -> Command {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin("fsct"));
+    command.args(args).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+}
+
+/// A reference on a pseudo-terminal, gone when the test ends.
+struct Simulated {
+    child: Child,
+    url: String,
+}
+
+impl Simulated {
+    fn new(args: &[&str]) -> Simulated {
+        let mut child = fsct(&[&["simulate"], args, &["--listen", "pty"]].concat()).spawn().expect("it starts");
+        let mut said = String::new();
+        let stderr = child.stderr.take().expect("it is piped");
+        BufReader::new(stderr).read_line(&mut said).expect("it says where it is");
+        let url = said.trim().rsplit(' ').next().expect("a word").to_owned();
+        assert!(url.starts_with("serial:/"), "{said}");
+        Simulated { child, url }
+    }
+
+    fn end(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+impl Drop for Simulated {
+    fn drop(&mut self) {
+        self.end();
+    }
+}
+
+/// A folder of its own for a run, gone when the test ends.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Folder {
+        let path = std::env::temp_dir().join(format!("fsct-serial-{}-{name}", std::process::id()));
+        let _ = std::fs::remove_dir_all(&path);
+        Folder(path)
+    }
+
+    fn out(&self) -> String {
+        self.0.display().to_string()
+    }
+
+    /// What is recorded so far.
+    fn lines(&self) -> Vec<Value> {
+        let text = std::fs::read_to_string(self.0.join("run.jsonl")).unwrap_or_default();
+        text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()
+    }
+
+    /// How many cases there are of each execution and verdict.
+    fn counts(&self) -> BTreeMap<String, usize> {
+        let mut counts = BTreeMap::new();
+        for case in self.lines().iter().filter_map(|line| line.get("case")) {
+            let word = |key: &str| case[key].as_str().unwrap_or_default().to_owned();
+            *counts.entry(format!("{} {}", word("execution"), word("verdict"))).or_default() += 1;
+        }
+        counts
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+#[rstest]
+#[case::device("device", "FSD-08*", "0")]
+#[case::master("master", "FSM-02*", "0")]
+fn a_reference_on_a_line_passes_run_after_run(#[case] role: &str, #[case] filter: &str, #[case] uncertainty: &str) {
+    let reference = Simulated::new(&[role]);
+    let folder = Folder::new(role);
+    for _ in 0..2 {
+        let args = ["run", "--dut", &reference.url, "--filter", filter, "--out", &folder.out()];
+        let run = fsct(&args).output().expect("it runs");
+        assert_eq!(run.status.code(), Some(0), "{run:?}");
+        assert_eq!(folder.counts().keys().collect::<Vec<_>>(), ["ok pass"]);
+        let header = folder.lines().swap_remove(0);
+        let dut = &header["header"]["dut"][0];
+        let trip = |key: &str| dut["round_trip"][key].as_u64().expect("a number");
+        assert!(trip("min_ns") > 0 && trip("min_ns") <= trip("median_ns") && trip("median_ns") <= trip("max_ns"));
+        // A virtual clock is as certain behind a line as anywhere.
+        assert_eq!(dut["uncertainty_ns"].to_string(), uncertainty);
+    }
+}
+
+#[test]
+fn what_varies_on_the_way_to_a_real_clock_is_uncertain() {
+    let reference = Simulated::new(&["device", "--clock", "real"]);
+    let folder = Folder::new("real");
+    let args = ["run", "--dut", &reference.url, "--filter", "FSD-0001", "--out", &folder.out()];
+    fsct(&args).output().expect("it runs");
+    let header = folder.lines().swap_remove(0);
+    let dut = &header["header"]["dut"][0];
+    let number = |value: &Value| value.as_u64().expect("a number");
+    let (min, max) = (number(&dut["round_trip"]["min_ns"]), number(&dut["round_trip"]["max_ns"]));
+    assert_eq!(number(&dut["uncertainty_ns"]), OWN_UNCERTAINTY_NS + (max - min) / 2);
+}
+
+#[test]
+fn a_line_pulled_in_the_middle_leaves_what_was_judged_before() {
+    let mut reference = Simulated::new(&["device"]);
+    let folder = Folder::new("pulled");
+    let url = format!("{}?wait=1ms", reference.url);
+    let running = fsct(&["run", "--dut", &url, "--out", &folder.out()]).spawn().expect("it starts");
+    while folder.lines().len() < 20 {
+        thread::sleep(Duration::from_millis(1));
+    }
+    reference.end();
+    let run = running.wait_with_output().expect("it ends by itself");
+    assert_eq!(run.status.code(), Some(3), "{run:?}");
+    let counts = folder.counts();
+    assert!(counts["ok pass"] >= 19 && counts["aborted inconclusive"] > 0, "{counts:?}");
+    // The case in which the line went, perhaps, and three that were not begun.
+    let lost: usize = counts.iter().filter(|(key, _)| key.starts_with("rig-error ")).map(|(_, count)| count).sum();
+    assert!((3..=4).contains(&lost), "{counts:?}");
+    assert!(counts.keys().all(|key| !key.starts_with("dut-error") && !key.ends_with("fail")), "{counts:?}");
+}
