@@ -18,8 +18,9 @@ use rstest::rstest;
 use std::io::Write;
 use std::time::Duration;
 
-/// Time-outs of a board that never answers, and of one that does.
+/// Time-outs of a board that never answers, of one that answers some requests, and of one that answers each.
 const HASTY: &str = "timeout=250ms";
+const BRISK: &str = "timeout=1s";
 const LENIENT: &str = "timeout=20s";
 
 /// Octets that look like the beginning of a frame of 65535 octets.
@@ -77,7 +78,7 @@ fn a_hello_without_answer_is_repeated() {
         let request = board.next();
         board.nothing(&request);
     });
-    let mut dut = connect(&address(&path, "timeout=300ms")).unwrap();
+    let mut dut = connect(&address(&path, BRISK)).unwrap();
     assert_eq!(dut.hello(), Ok(description()));
     assert_eq!(apply(dut.as_mut(), &power()), Ok(vec![]));
     board.join().unwrap();
@@ -112,7 +113,7 @@ fn a_repeated_hello_that_is_answered_twice_confuses_nothing() {
         let request = board.next();
         board.nothing(&request);
     });
-    let mut dut = connect(&address(&path, "timeout=300ms")).unwrap();
+    let mut dut = connect(&address(&path, BRISK)).unwrap();
     assert_eq!(dut.hello(), Ok(description()));
     assert_eq!(apply(dut.as_mut(), &power()), Ok(vec![]));
     board.join().unwrap();
@@ -173,7 +174,7 @@ fn a_damaged_answer_is_a_fault_of_the_rig_and_stimuli_are_not_repeated() {
         let hello = board.next();
         board.describe(&hello);
     });
-    let mut dut = connect(&address(&path, HASTY)).unwrap();
+    let mut dut = connect(&address(&path, BRISK)).unwrap();
     dut.hello().unwrap();
     let error = apply(dut.as_mut(), &power()).unwrap_err();
     assert!(matches!(error, DutError::Line { .. }) && error.fault() == Fault::Rig, "{error:?}");
@@ -199,10 +200,10 @@ fn an_answer_that_comes_too_late_is_not_taken_for_that_to_a_later_request() {
         pack_observed(&[seen(0, 7, Seen::Unsupported)], 0xFFFF, &mut payload);
         board.send(OBSERVED, request.sequence, &payload);
     });
-    let mut dut = connect(&address(&path, HASTY)).unwrap();
+    let mut dut = connect(&address(&path, BRISK)).unwrap();
     dut.hello().unwrap();
     let error = apply(dut.as_mut(), &power()).unwrap_err();
-    assert_eq!(error, DutError::Timeout { after: Duration::from_millis(250) });
+    assert_eq!(error, DutError::Timeout { after: Duration::from_secs(1) });
     let mut dut = connect(&address(&path, LENIENT)).unwrap();
     dut.hello().unwrap();
     assert_eq!(apply(dut.as_mut(), &power()), Ok(vec![seen(0, 7, Seen::Unsupported)]));
