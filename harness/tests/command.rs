@@ -1,42 +1,12 @@
 //! The command line: exit codes, records, and DUTs that misbehave.
 
+mod folder;
+
 use assert_cmd::Command;
+use folder::Folder;
 use rstest::rstest;
 use std::io::{Read, Write};
 use std::net::TcpListener;
-use std::path::PathBuf;
-
-/// A folder of its own for a test, gone when the test ends.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Folder {
-        let path = std::env::temp_dir().join(format!("fsct-test-{}-{name}", std::process::id()));
-        let _ = std::fs::remove_dir_all(&path);
-        std::fs::create_dir_all(&path).expect("the folder for temporary files can be written");
-        Folder(path)
-    }
-
-    fn file(&self, name: &str, text: &str) -> String {
-        let path = self.0.join(name);
-        std::fs::write(&path, text).expect("it can be written");
-        path.display().to_string()
-    }
-
-    fn text(&self, name: &str) -> String {
-        std::fs::read_to_string(self.0.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
-    }
-
-    fn out(&self) -> String {
-        self.0.display().to_string()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
 
 fn fsct(args: &[&str]) -> Outcome {
     let output = Command::cargo_bin("fsct").expect("it is built").args(args).output().expect("it runs");
