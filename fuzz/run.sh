@@ -8,6 +8,7 @@ seconds=${1:?how many seconds for each target}
 command -v cargo-fuzz >/dev/null || cargo install --locked --version 0.13.2 cargo-fuzz
 # libFuzzer's instrumentation is no stable option; the compiler is.
 export RUSTC_BOOTSTRAP=1
+# cargo fuzz knows no --locked.
 cargo metadata --locked --format-version 1 --manifest-path fuzz/Cargo.toml >/dev/null
 for target in frame_decoder session; do
     mkdir -p "fuzz/found/$target"

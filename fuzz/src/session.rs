@@ -163,8 +163,8 @@ fn stimulus(number: u8) -> Stimulus {
 /// Cooks the answers by the recipe. The upper half of each step is the sequence number of its frame.
 fn answers(input: &mut Input<'_>, stimuli: &[Stimulus]) -> Vec<u8> {
     let mut frames: Vec<Vec<u8>> = Vec::new();
-    while !input.is_empty() {
-        let room = LONGEST.saturating_sub(frames.iter().map(Vec::len).sum());
+    let mut room = LONGEST;
+    while !input.is_empty() && room > 0 {
         let step = input.octet();
         let sequence = step / 16;
         let framed = |kind, payload: &[u8]| encode(kind, sequence, payload).unwrap_or_default();
@@ -203,6 +203,7 @@ fn answers(input: &mut Input<'_>, stimuli: &[Stimulus]) -> Vec<u8> {
             }
             _ => frames.push(vec![input.octet(); usize::from(input.number()).min(room)]),
         }
+        room = LONGEST.saturating_sub(frames.iter().map(Vec::len).sum());
     }
     frames.concat()
 }
