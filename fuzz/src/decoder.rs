@@ -16,7 +16,7 @@ pub fn frame_decoder(input: &[u8]) {
     let stream = stream(&mut input);
     let expected = obvious(&stream);
     assert_eq!(decoded(&stream, &[]), expected, "in one piece");
-    assert_eq!(decoded(&stream, cuts), expected, "in pieces");
+    assert_eq!(decoded(&stream, &cuts), expected, "in pieces");
     found_behind_noise(&stream);
 }
 
@@ -105,11 +105,11 @@ fn stream(input: &mut Input<'_>) -> Vec<u8> {
         match input.octet() % 8 {
             0 => stream.extend(input.octets()),
             1 => {
-                latest = encode(input.octet(), input.octet(), input.octets()).expect("it is short");
+                latest = encode(input.octet(), input.octet(), &input.octets()).expect("it is short");
                 stream.extend(&latest);
             }
             2 => {
-                latest = encode(input.octet(), input.octet(), input.octets()).expect("it is short");
+                latest = encode(input.octet(), input.octet(), &input.octets()).expect("it is short");
                 let bit = usize::from(input.number()) % (8 * latest.len());
                 latest[bit / 8] ^= 1 << (bit % 8);
                 stream.extend(&latest);

@@ -21,9 +21,12 @@ impl<'a> Input<'a> {
         u16::from_be_bytes([self.octet(), self.octet()])
     }
 
-    /// As many octets as the next one says, or as there are.
-    pub fn octets(&mut self) -> &'a [u8] {
-        let count = usize::from(self.octet()).min(self.0.len());
-        self.0.split_off(..count).unwrap_or_default()
+    /// As many octets as the next one says.
+    pub fn octets(&mut self) -> Vec<u8> {
+        let count = usize::from(self.octet());
+        let there = self.0.split_off(..count.min(self.0.len())).unwrap_or_default();
+        let mut octets = there.to_vec();
+        octets.resize(count, 0);
+        octets
     }
 }

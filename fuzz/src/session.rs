@@ -173,11 +173,11 @@ fn answers(input: &mut Input<'_>, stimuli: &[Stimulus]) -> Vec<u8> {
             1 => frames.push(framed(DESCRIPTION, &description(input))),
             2 => frames.push(framed(OBSERVED, &sound_observations(stimuli))),
             3 | 4 => frames.push(framed(OBSERVED, &observations(input))),
-            5 => frames.push(framed(ERROR, input.octets())),
+            5 => frames.push(framed(ERROR, &input.octets())),
             6 => frames
-                .push(framed([HELLO, APPLY, DESCRIPTION, OBSERVED][usize::from(input.octet() % 4)], input.octets())),
-            7 => frames.push(framed(input.octet(), input.octets())),
-            8 => frames.push(input.octets().to_vec()),
+                .push(framed([HELLO, APPLY, DESCRIPTION, OBSERVED][usize::from(input.octet() % 4)], &input.octets())),
+            7 => frames.push(framed(input.octet(), &input.octets())),
+            8 => frames.push(input.octets()),
             // The same frame again, or an earlier one.
             9 => {
                 let back = usize::from(input.octet());
@@ -252,7 +252,7 @@ fn sound_description(number: u8) -> Vec<u8> {
 fn description(input: &mut Input<'_>) -> Vec<u8> {
     let mut out = vec![message::VERSION];
     for _ in 0..input.octet() % 16 {
-        put(&mut out, input.octet() % 12, input.octets());
+        put(&mut out, input.octet() % 12, &input.octets());
     }
     out
 }
@@ -284,7 +284,7 @@ fn observations(input: &mut Input<'_>) -> Vec<u8> {
     let mut out = vec![head / 128];
     for _ in 0..head % 16 {
         out.extend([0, input.octet() % 16, 0, 0, 0, 0, 0, 0, 0, input.octet()]);
-        put(&mut out, input.octet() % 16, input.octets());
+        put(&mut out, input.octet() % 16, &input.octets());
     }
     out
 }
