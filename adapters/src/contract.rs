@@ -16,6 +16,8 @@ use std::fmt;
 
 /// The most stimuli one [`Dut::apply`] can number: every position then fits [`Observation::stimulus`].
 pub const MAX_BATCH: usize = 1 << 16;
+/// The most octets of on-request data, by the base standard.
+pub const MAX_RECORD: usize = 232;
 
 /// A device under test, however it is reached.
 pub trait Dut: Send {

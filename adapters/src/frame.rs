@@ -162,6 +162,11 @@ impl Decoder {
         }
     }
 
+    /// Octets remembered: when all frames have been fetched, fewer than the latest piece and one frame have.
+    pub fn held(&self) -> usize {
+        self.buffer.len()
+    }
+
     /// What has been skipped since the latest frame.
     pub fn garbage(&self) -> &Garbage {
         &self.garbage

@@ -30,8 +30,8 @@ mod stream;
 pub use address::{Address, AddressError};
 pub use connect::{CONNECT_TIMEOUT, connect, connect_within};
 pub use contract::{
-    Clock, ClockKind, Description, Dut, Identity, Line, MAX_BATCH, Mode, Observation, Octets, Offer, Pco, Response,
-    Role, Seen, Service, SmiRequest, SmiResult, SmiService, Source, Stimulus, Variant, smi,
+    Clock, ClockKind, Description, Dut, Identity, Line, MAX_BATCH, MAX_RECORD, Mode, Observation, Octets, Offer, Pco,
+    Response, Role, Seen, Service, SmiRequest, SmiResult, SmiService, Source, Stimulus, Variant, smi,
 };
 pub use error::{DutError, Fault};
 pub use fsct_protocol::{Edition, ProtMode};

@@ -101,7 +101,7 @@ fn observation() -> impl Strategy<Value = Observation> {
     let seen = prop_oneof![
         (any::<u8>(), option::of(image())).prop_map(|(port, octets)| Seen::Image { port, octets }),
         (any::<u8>(), service(), image()).prop_map(|(port, service, value)| Seen::Service { port, service, value }),
-        vec(any::<u8>(), 0..300).prop_map(Seen::Value),
+        vec(any::<u8>(), 0..=232).prop_map(Seen::Value),
         Just(Seen::Written),
         any::<u16>().prop_map(|error| Seen::Refused { error }),
         (any::<u16>(), any::<u8>()).prop_map(|(code, qualifier)| Seen::Event { code, qualifier }),
@@ -272,6 +272,7 @@ fn malformed_stimuli(#[case] payload: &[u8], #[case] text: &str) {
 #[case(1, &[1, 0, 9], "an image has 3 octets")]
 #[case(2, &[1], "a service has 1 octets")]
 #[case(2, &[1, 7, 0], "a service is 7, which version 1 does not know")]
+#[case(3, &[0; 233], "a value read has 233 octets")]
 #[case(4, &[0], "the answer to a write has 1 octets")]
 #[case(5, &[0], "a refusal has 1 octets")]
 #[case(6, &[0, 0], "an Event has 2 octets")]
@@ -281,6 +282,7 @@ fn malformed_stimuli(#[case] payload: &[u8], #[case] text: &str) {
 #[case(8, &[1, 4], "a mode is 4, which version 1 does not know")]
 #[case(9, &[1, 0, 0x42, 2], "on-request data has 4 octets")]
 #[case(9, &[1, 0, 0x42, 2, 0, 9], "a read of on-request data has 6 octets")]
+#[case(9, &[1; 238], "a write of on-request data has 238 octets")]
 #[case(9, &[1, 2, 0x42, 2, 0], "the direction of on-request data is 2, which version 1 does not know")]
 #[case(10, &[1, 1], "a line has 2 octets")]
 #[case(10, &[1, 0, 1], "a line is 0, which version 1 does not know")]

@@ -1,6 +1,5 @@
 //! The command line: exit codes, records, and DUTs that misbehave.
 
-#[path = "common/cli.rs"]
 mod cli;
 
 use cli::{Folder, fsct};

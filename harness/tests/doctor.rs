@@ -1,6 +1,5 @@
 //! `fsct doctor`: what a DUT is and which suites apply, or whose fault it is that nothing can be said.
 
-#[path = "common/cli.rs"]
 mod cli;
 
 use cli::{Folder, fsct};

@@ -1,7 +1,6 @@
 //! `lib:`: shared libraries in C, and what becomes of a run when they misbehave.
 #![cfg(unix)]
 
-#[path = "common/cli.rs"]
 mod cli;
 
 use cli::{Folder, Outcome, fsct};

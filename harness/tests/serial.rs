@@ -1,11 +1,12 @@
 //! The command over a serial line: `fsct simulate --listen pty` at one end, `fsct run --dut serial:..` at the other.
 #![cfg(unix)]
 
+mod cli;
+
+use cli::Folder;
 use rstest::rstest;
 use serde_json::Value;
-use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
-use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::thread;
 use std::time::Duration;
@@ -48,49 +49,12 @@ impl Drop for Simulated {
     }
 }
 
-/// A folder of its own for a run, gone when the test ends.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Folder {
-        let path = std::env::temp_dir().join(format!("fsct-serial-{}-{name}", std::process::id()));
-        let _ = std::fs::remove_dir_all(&path);
-        Folder(path)
-    }
-
-    fn out(&self) -> String {
-        self.0.display().to_string()
-    }
-
-    /// What is recorded so far.
-    fn lines(&self) -> Vec<Value> {
-        let text = std::fs::read_to_string(self.0.join("run.jsonl")).unwrap_or_default();
-        text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()
-    }
-
-    /// How many cases there are of each execution and verdict.
-    fn counts(&self) -> BTreeMap<String, usize> {
-        let mut counts = BTreeMap::new();
-        for case in self.lines().iter().filter_map(|line| line.get("case")) {
-            let word = |key: &str| case[key].as_str().unwrap_or_default().to_owned();
-            *counts.entry(format!("{} {}", word("execution"), word("verdict"))).or_default() += 1;
-        }
-        counts
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
 #[rstest]
 #[case::device("device", "FSD-08*", "0")]
 #[case::master("master", "FSM-02*", "0")]
 fn a_reference_on_a_line_passes_run_after_run(#[case] role: &str, #[case] filter: &str, #[case] uncertainty: &str) {
     let reference = Simulated::new(&[role]);
-    let folder = Folder::new(role);
+    let folder = Folder::new(&format!("serial-{role}"));
     for _ in 0..2 {
         let args = ["run", "--dut", &reference.url, "--filter", filter, "--out", &folder.out()];
         let run = fsct(&args).output().expect("it runs");
@@ -108,7 +72,7 @@ fn a_reference_on_a_line_passes_run_after_run(#[case] role: &str, #[case] filter
 #[test]
 fn what_varies_on_the_way_to_a_real_clock_is_uncertain() {
     let reference = Simulated::new(&["device", "--clock", "real"]);
-    let folder = Folder::new("real");
+    let folder = Folder::new("serial-real");
     let args = ["run", "--dut", &reference.url, "--filter", "FSD-0001", "--out", &folder.out()];
     fsct(&args).output().expect("it runs");
     let header = folder.lines().swap_remove(0);
@@ -121,7 +85,7 @@ fn what_varies_on_the_way_to_a_real_clock_is_uncertain() {
 #[test]
 fn a_line_pulled_in_the_middle_leaves_what_was_judged_before() {
     let mut reference = Simulated::new(&["device"]);
-    let folder = Folder::new("pulled");
+    let folder = Folder::new("serial-pulled");
     let url = format!("{}?wait=1ms", reference.url);
     let running = fsct(&["run", "--dut", &url, "--out", &folder.out()]).spawn().expect("it starts");
     while folder.lines().len() < 20 {
@@ -136,4 +100,32 @@ fn a_line_pulled_in_the_middle_leaves_what_was_judged_before() {
     let lost: usize = counts.iter().filter(|(key, _)| key.starts_with("rig-error ")).map(|(_, count)| count).sum();
     assert!((3..=4).contains(&lost), "{counts:?}");
     assert!(counts.keys().all(|key| !key.starts_with("dut-error") && !key.ends_with("fail")), "{counts:?}");
+}
+
+#[test]
+fn a_line_pulled_and_plugged_again_costs_one_case() {
+    let mut reference = Simulated::new(&["device"]);
+    let folder = Folder::new("serial-again");
+    // A name that stays while what is behind it goes and comes, as udev gives one.
+    let name = folder.0.join("board");
+    let plug = |reference: &Simulated| {
+        let target = reference.url.strip_prefix("serial:").expect("a path");
+        let fresh = folder.0.join("fresh");
+        std::os::unix::fs::symlink(target, &fresh).expect("a link can be made");
+        std::fs::rename(&fresh, &name).expect("and put in place");
+    };
+    plug(&reference);
+    let url = format!("serial:{}?wait=60s", name.display());
+    let running = fsct(&["run", "--dut", &url, "--out", &folder.out()]).spawn().expect("it starts");
+    while folder.lines().len() < 20 {
+        thread::sleep(Duration::from_millis(1));
+    }
+    reference.end();
+    let again = Simulated::new(&["device"]);
+    plug(&again);
+    let run = running.wait_with_output().expect("it ends by itself");
+    assert_eq!(run.status.code(), Some(3), "{run:?}");
+    let counts = folder.counts();
+    let lost: usize = counts.iter().filter(|(key, _)| key.starts_with("rig-error ")).map(|(_, count)| count).sum();
+    assert_eq!((lost, counts["ok pass"]), (1, 1307), "{counts:?}");
 }

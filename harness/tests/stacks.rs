@@ -1,7 +1,6 @@
 //! The example stacks in C and in Python: a third and a fourth reading of the tables, judged as any product is.
 #![cfg(unix)]
 
-#[path = "common/cli.rs"]
 mod cli;
 
 use cli::{Folder, fsct};

@@ -1,7 +1,7 @@
 //! Observations in the payload of [`OBSERVED`](super::OBSERVED): a flag octet, then stimulus, time and TLV of each.
 
 use super::{Cursor, Malformed, put};
-use crate::{Line, Mode, Observation, Octets, Seen, Service, SmiResult, Source};
+use crate::{Line, MAX_RECORD, Mode, Observation, Octets, Seen, Service, SmiResult, Source};
 
 const IMAGE: u8 = 1;
 const SERVICE: u8 = 2;
@@ -110,6 +110,7 @@ pub(crate) fn unpack_seen(kind: u8, value: &[u8]) -> Result<Seen, Malformed> {
             Ok(Seen::Service { port: *port, service, value: octets(value, "a service")? })
         }
         (SERVICE, _) => Err(length("a service")),
+        (VALUE, value) if value.len() > MAX_RECORD => Err(length("a value read")),
         (VALUE, value) => Ok(Seen::Value(value.to_vec())),
         (WRITTEN, []) => Ok(Seen::Written),
         (WRITTEN, _) => Err(length("the answer to a write")),
@@ -130,6 +131,10 @@ pub(crate) fn unpack_seen(kind: u8, value: &[u8]) -> Result<Seen, Malformed> {
             let write = bit(*write, "the direction of on-request data")?;
             if !write && !data.is_empty() {
                 return Err(length("a read of on-request data"));
+            }
+            // Any number of these may come with a stimulus, and the harness remembers them.
+            if data.len() > MAX_RECORD {
+                return Err(length("a write of on-request data"));
             }
             let index = u16::from_be_bytes([*high, *low]);
             Ok(Seen::Request { port: *port, index, subindex: *subindex, data: write.then(|| data.to_vec()) })

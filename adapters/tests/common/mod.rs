@@ -4,9 +4,11 @@
 
 use fsct_adapters::{
     Address, Clock, ClockKind, Description, Dut, DutError, Identity, Line, Listener, Mode, Observation, Octets, Offer,
-    Pco, Role, Seen, Service, SmiRequest, SmiResult, SmiService, Source, Stimulus, Stop, Variant, serve,
+    Pco, Peer, Role, Seen, Service, SmiRequest, SmiResult, SmiService, Source, Stimulus, Stop, StreamDut, Variant,
+    serve,
 };
 use fsct_protocol::{Edition, ProtMode};
+use std::io::{Cursor, sink};
 use std::net::{TcpListener, TcpStream};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
@@ -159,6 +161,20 @@ impl Drop for Served {
             thread.join().unwrap().unwrap();
         }
     }
+}
+
+/// The other end of a stream in memory.
+pub struct Gone;
+
+impl Peer for Gone {
+    fn close(&mut self) -> String {
+        String::new()
+    }
+}
+
+/// A DUT that says these octets, whatever it is asked, and is gone.
+pub fn says(octets: Vec<u8>) -> StreamDut {
+    StreamDut::new(Cursor::new(octets), sink(), Box::new(Gone), PATIENT)
 }
 
 /// A peer that treats its first connection like this.

@@ -2,6 +2,8 @@
 #![allow(dead_code, reason = "not every test needs all of it")]
 
 use assert_cmd::Command;
+use serde_json::Value;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// A folder of its own for a test, gone when the test ends.
@@ -23,6 +25,22 @@ impl Folder {
 
     pub fn text(&self, name: &str) -> String {
         std::fs::read_to_string(self.0.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+    }
+
+    /// What is recorded so far, line by line.
+    pub fn lines(&self) -> Vec<Value> {
+        let text = std::fs::read_to_string(self.0.join("run.jsonl")).unwrap_or_default();
+        text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()
+    }
+
+    /// How many cases there are of each execution and verdict: "ok pass".
+    pub fn counts(&self) -> BTreeMap<String, usize> {
+        let mut counts = BTreeMap::new();
+        for case in self.lines().iter().filter_map(|line| line.get("case")) {
+            let word = |key: &str| case[key].as_str().unwrap_or_default().to_owned();
+            *counts.entry(format!("{} {}", word("execution"), word("verdict"))).or_default() += 1;
+        }
+        counts
     }
 
     pub fn out(&self) -> String {
