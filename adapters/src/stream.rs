@@ -41,6 +41,12 @@ pub trait Peer: Send {
     /// Ends the connection so that both threads of a [`StreamDut`] find their streams ended, and says how the other end
     /// fared: " (exit status 3)", with a leading space, or nothing. The stream for writing has been let go before.
     fn close(&mut self) -> String;
+
+    /// As [`Peer::close`], when the DUT has failed and whatever it still sends is of no use: one that is busy sending
+    /// finds out too.
+    fn abort(&mut self) -> String {
+        self.close()
+    }
 }
 
 type Writer = Arc<Mutex<dyn Write + Send>>;
@@ -134,18 +140,21 @@ impl StreamDut {
         }
         act(self).inspect_err(|error| {
             self.failed = Some(error.clone());
-            self.hang_up();
+            self.let_go();
+            self.peer.abort();
         })
     }
 
     fn hang_up(&mut self) -> String {
+        self.let_go();
+        self.peer.close()
+    }
+
+    /// Lets both threads come to their end: the one that has something to hand over finds nobody to take it.
+    fn let_go(&mut self) {
         self.requests = None;
         self.writer = None;
-        if self.line.is_some() {
-            // The port has to be let go of, and so a reading thread that has something to hand over gives up.
-            self.chunks = channel().1;
-        }
-        self.peer.close()
+        self.chunks = channel().1;
     }
 
     /// Sends a request; `alone`: none before it is unanswered.
