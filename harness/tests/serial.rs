@@ -6,6 +6,7 @@ mod cli;
 use cli::Folder;
 use rstest::rstest;
 use serde_json::Value;
+use serialport::{SerialPort as _, TTYPort};
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
 use std::thread;
@@ -128,4 +129,36 @@ fn a_line_pulled_and_plugged_again_costs_one_case() {
     let counts = folder.counts();
     let lost: usize = counts.iter().filter(|(key, _)| key.starts_with("rig-error ")).map(|(_, count)| count).sum();
     assert_eq!((lost, counts["ok pass"]), (1, 1307), "{counts:?}");
+}
+
+/// Two lines, each with its far end at the other: their near ends.
+fn null_modem() -> [(TTYPort, String); 2] {
+    let [one, other] = [(), ()].map(|()| TTYPort::pair().expect("there are pseudo-terminals"));
+    let end = |port: &TTYPort| port.try_clone_native().expect("a clone");
+    for (mut from, mut to) in [(end(&one.0), end(&other.0)), (end(&other.0), end(&one.0))] {
+        from.set_timeout(Duration::from_secs(3600)).expect("any time-out will do");
+        thread::spawn(move || std::io::copy(&mut from, &mut to));
+    }
+    [one, other].map(|(far, near)| {
+        let path = near.name().expect("a pseudo-terminal has a name");
+        // Open for as long as the test lives, else a line ends when the first who opened it closes it.
+        std::mem::forget(far);
+        (near, path)
+    })
+}
+
+#[rstest]
+#[case::device("device", fsct_c::DEVICE, 1308)]
+#[case::master("master", fsct_c::MASTER, 1050)]
+fn a_stack_in_c_at_the_other_end_of_a_line(#[case] role: &str, #[case] sources: &[&str], #[case] cases: usize) {
+    let sources = [fsct_c::CLIENT, sources].concat();
+    let Some(program) = fsct_c::build(fsct_c::Kind::Program, &sources, &["-DFSCT_CLIENT_PAYLOAD=2048"]) else { return };
+    let [(_board, board), (_port, port)] = null_modem();
+    let mut child = Command::new(program).arg(board).spawn().expect("it starts");
+    let folder = Folder::new(&format!("serial-c-{role}"));
+    let run = fsct(&["run", "--dut", &format!("serial:{port}"), "--out", &folder.out()]).output().expect("it runs");
+    let _ = child.kill();
+    let _ = child.wait();
+    assert_eq!(run.status.code(), Some(0), "{run:?}");
+    assert_eq!(folder.counts(), [("ok pass".to_owned(), cases)].into());
 }
