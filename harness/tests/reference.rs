@@ -96,7 +96,8 @@ fn each_mutant_fails_and_the_clause_is_named(#[case] mutant: Mutant, #[case] cla
 fn a_failure_tells_what_the_matter_is() {
     let library = library();
     let told: Vec<String> = Mutant::ALL
-        .into_iter()
+        .iter()
+        .copied()
         .map(|mutant| {
             let make = || reference(Options { mutant: Some(mutant), ..Options::default() });
             let cases = run(&library, &Selection::default(), make);

@@ -94,7 +94,8 @@ fn each_mutant_fails_and_the_clause_is_named(#[case] mutant: MasterMutant, #[cas
 fn a_failure_of_a_master_tells_what_the_matter_is() {
     let library = library();
     let told: Vec<String> = MasterMutant::ALL
-        .into_iter()
+        .iter()
+        .copied()
         .map(|mutant| {
             let options = MasterOptions { mutant: Some(mutant), ..MasterOptions::default() };
             let cases = judged(&library, "reference-master", options);

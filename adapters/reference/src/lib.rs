@@ -3,6 +3,7 @@
 //! Written by hand from Tables 38 and 40, clauses 7 to 11 and Annex A of the standard. It shares with the harness that judges it the octet
 //! codecs of `fsct-protocol` and nothing else, so that a wrong reading of the tables shows as a disagreement.
 
+mod catalogue;
 mod dead;
 mod device;
 mod master;

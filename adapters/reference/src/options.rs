@@ -118,7 +118,7 @@ pub(crate) fn names<'q, const N: usize>(
 fn mutant(value: &str) -> Result<Mutant, OptionError> {
     Mutant::from_name(value).ok_or_else(|| OptionError::UnknownMutant {
         given: value.to_owned(),
-        nearest: nearest(value, Mutant::ALL.map(Mutant::name)),
+        nearest: nearest(value, Mutant::ALL.iter().map(|mutant| mutant.name())),
     })
 }
 
@@ -135,6 +135,6 @@ pub(crate) fn clock(value: &str) -> Result<ClockKind, OptionError> {
     }
 }
 
-pub(crate) fn nearest<const N: usize>(given: &str, known: [&'static str; N]) -> &'static str {
+pub(crate) fn nearest(given: &str, known: impl IntoIterator<Item = &'static str>) -> &'static str {
     known.into_iter().min_by_key(|name| strsim::damerau_levenshtein(given, name)).unwrap_or_default()
 }

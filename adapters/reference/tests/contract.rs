@@ -160,7 +160,7 @@ fn options_of_the_address() {
     assert_eq!(query(&[]), Ok(Options::default()));
     let all = Options { mutant: Some(Mutant::WrongSeed), latency: 8, clock: ClockKind::Real };
     assert_eq!(query(&[("clock", "real"), ("mutant", "wrong-seed"), ("latency", "8")]), Ok(all));
-    for mutant in Mutant::ALL {
+    for mutant in Mutant::ALL.iter().copied() {
         assert_eq!(query(&[("mutant", mutant.name())]), Ok(Bench::mutant(mutant)));
     }
 }

@@ -149,7 +149,7 @@ fn options_of_the_address() {
         ("latency", "8"),
     ];
     assert_eq!(query(&pairs), Ok(all));
-    for which in MasterMutant::ALL {
+    for which in MasterMutant::ALL.iter().copied() {
         assert_eq!(query(&[("mutant", which.name())]), Ok(mutant(which)));
     }
 }

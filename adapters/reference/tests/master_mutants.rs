@@ -28,7 +28,7 @@ fn outs(bench: &mut Bench, answers: &[Answer]) -> Vec<Out> {
 
 #[test]
 fn names_are_unique_and_known() {
-    for mutant in MasterMutant::ALL {
+    for mutant in MasterMutant::ALL.iter().copied() {
         assert_eq!(MasterMutant::from_name(mutant.name()), Some(mutant));
         assert!(!mutant.clause().is_empty() && mutant.about().ends_with('.'));
     }
@@ -196,7 +196,7 @@ fn wrong_arg_block_offset() {
 #[test]
 fn most_mutants_start_up_like_the_original() {
     use MasterMutant::{PdinLiveWhileSdset, RecordAfterOperate, WrongArgBlockOffset};
-    for which in MasterMutant::ALL {
+    for which in MasterMutant::ALL.iter().copied() {
         let (right, wrong) = seen(which, |options| {
             let mut bench = Bench::factory_with(plain(), options);
             bench.configure(&list(plain()));

@@ -32,7 +32,7 @@ fn data_for_zero(port_num: u8, octet: u8) -> [u8; 3] {
 
 #[test]
 fn names_are_unique_and_known() {
-    for mutant in Mutant::ALL {
+    for mutant in Mutant::ALL.iter().copied() {
         assert_eq!(Mutant::from_name(mutant.name()), Some(mutant));
         assert!(!mutant.clause().is_empty() && mutant.about().ends_with('.'));
     }
@@ -171,7 +171,7 @@ fn set_sd_ignored() {
 #[test]
 fn most_mutants_start_up_like_the_original() {
     use Mutant::{PdoutLiveDuringSdCycles, PortNotInverted, SdCycles2, WrongSeed};
-    for mutant in Mutant::ALL {
+    for mutant in Mutant::ALL.iter().copied() {
         let (right, wrong) = seen(mutant, |options| {
             let mut bench = Bench::waiting_first_with(variant(plain().edition, ProtMode::Crc32, 6), options);
             [m(0).sd(), m(1), m(2), m(3), m(4)].map(|out| {

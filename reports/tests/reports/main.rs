@@ -1,6 +1,7 @@
 //! Reports made from records: journal, summary and exit code, JUnit, HTML, with hostile text and cut-off files.
 
 mod common;
+mod compare;
 mod decode;
 mod journal;
 mod rendered;

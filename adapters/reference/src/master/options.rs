@@ -60,7 +60,7 @@ impl MasterOptions {
 fn mutant(value: &str) -> Result<MasterMutant, OptionError> {
     MasterMutant::from_name(value).ok_or_else(|| OptionError::UnknownMutant {
         given: value.to_owned(),
-        nearest: nearest(value, MasterMutant::ALL.map(MasterMutant::name)),
+        nearest: nearest(value, MasterMutant::ALL.iter().map(|mutant| mutant.name())),
     })
 }
 
