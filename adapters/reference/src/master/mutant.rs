@@ -94,6 +94,8 @@ catalogue! {
             "setSD and ChFAckReq stand at each other's bit."
         McountBitsReversed "mcount-bits-reversed", "11.4.6 Table 31":
             "The three bits of MCount stand in reverse order."
+        ReservedBitSent "reserved-bit-sent", "11.4.6":
+            "Bit 2 of Control&MCnt, reserved, is sent as 1."
         DcountNotInverted "dcount-not-inverted", "11.5.2 Table 38":
             "DCount_i is compared with MCount instead of its inverse."
         CounterNotChecked "counter-not-checked", "11.5.2 Table 38 T7":
@@ -120,8 +122,8 @@ catalogue! {
             "MTimer expires after three quarters of FSP_Watchdog."
         WatchdogLate "watchdog-late", "11.5.5":
             "MTimer expires a quarter of FSP_Watchdog late."
-        WatchdogLowOctet "watchdog-low-octet", "11.5.5":
-            "Only the low octet of FSP_Watchdog is used."
+        WatchdogOctetsSwapped "watchdog-octets-swapped", "11.5.5":
+            "The two octets of FSP_Watchdog are swapped."
         SdsetIgnored "sdset-ignored", "11.3.2 Table 28":
             "SDset of the answer neither makes PDin_M safe nor shows in SDset_S."
         SdsetNotReported "sdset-not-reported", "11.3.2 Table 28":
@@ -158,7 +160,7 @@ catalogue! {
             "The verify record carries FSP_TechParCRC 0."
         WakeUpBeforeReadyPulse "wake-up-before-ready-pulse", "5.1":
             "The wake-up follows the supply and does not wait for the Ready pulse."
-        NoSecondSupplyCycle "no-second-supply-cycle", "7.2":
+        NoSecondSupplyCycle "no-second-supply-cycle", "5.1":
             "A port whose Ready pulse did not come in time is given up for good."
         TimeToReadyTooShort "time-to-ready-too-short", "5.1":
             "The Ready pulse is waited for a tenth of its time."

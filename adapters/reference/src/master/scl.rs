@@ -375,7 +375,7 @@ impl Scl {
         match self.config.mutant {
             Some(MasterMutant::WatchdogEarly) => ns(ms) / 4 * 3,
             Some(MasterMutant::WatchdogLate) => ns(ms) / 4 * 5,
-            Some(MasterMutant::WatchdogLowOctet) => ns(ms & 0xFF),
+            Some(MasterMutant::WatchdogOctetsSwapped) => ns(ms.swap_bytes()),
             _ => ns(ms),
         }
     }

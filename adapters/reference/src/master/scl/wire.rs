@@ -19,6 +19,7 @@ pub(super) fn emitted(config: &Config, pd: Pd, control: Control) -> Emitted {
             let mcount = mcount.reverse_bits() >> 5;
             wire.octet = Control { mcount, set_sd, ch_f_ack_req }.to_octet();
         }
+        Some(MasterMutant::ReservedBitSent) => wire.octet |= 1 << 2,
         Some(MasterMutant::ChFAckReqBitMissing) => {
             wire.octet = Control { mcount, set_sd, ch_f_ack_req: false }.to_octet();
         }
