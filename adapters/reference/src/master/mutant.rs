@@ -244,7 +244,7 @@ catalogue! {
             "One line high is ON."
         OssdeNoFilter "ossde-no-filter", "5.3.2.1":
             "Test pulses are not filtered."
-        OssdeDiscrepancyTooShort "ossde-discrepancy-too-short", "5.5":
+        OssdeDiscrepancyTooShort "ossde-discrepancy-too-short", "5.4 (v1.1), 5.5 (iec2022)":
             "A skew of 1 ms is a fault already, in v1.1 too."
     }
 }
