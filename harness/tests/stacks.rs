@@ -21,7 +21,7 @@ fn conforms(url: &str, name: &str, cases: &str) {
 
 #[rstest]
 #[case::device("device", DEVICE, "1308")]
-#[case::master("master", MASTER, "1050")]
+#[case::master("master", MASTER, "1204")]
 fn a_stack_in_c_conforms_as_a_library(#[case] name: &str, #[case] sources: &[&str], #[case] cases: &str) {
     let Some(library) = build(Kind::Library, sources, &[]) else { return };
     conforms(&format!("lib:{}", library.display()), &format!("c-lib-{name}"), cases);
@@ -29,7 +29,7 @@ fn a_stack_in_c_conforms_as_a_library(#[case] name: &str, #[case] sources: &[&st
 
 #[rstest]
 #[case::device("device", DEVICE, "1308")]
-#[case::master("master", MASTER, "1050")]
+#[case::master("master", MASTER, "1204")]
 fn a_stack_in_c_conforms_as_a_program_and_keeps_to_its_memory(
     #[case] name: &str,
     #[case] sources: &[&str],

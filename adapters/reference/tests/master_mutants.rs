@@ -1,4 +1,4 @@
-//! Each mutant of the FS-Master differs from the original where its sentence says, and the original is right there.
+//! Each of the first mutants of the FS-Master differs from the original where its sentence says, and the original is right there.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod master_common;
@@ -28,7 +28,9 @@ fn outs(bench: &mut Bench, answers: &[Answer]) -> Vec<Out> {
 
 #[test]
 fn names_are_unique_and_known() {
+    assert!(MasterMutant::ALL.len() >= 60);
     for mutant in MasterMutant::ALL.iter().copied() {
+        // Of two with the same name, one would not be found.
         assert_eq!(MasterMutant::from_name(mutant.name()), Some(mutant));
         assert!(!mutant.clause().is_empty() && mutant.about().ends_with('.'));
     }
@@ -192,11 +194,12 @@ fn wrong_arg_block_offset() {
     }
 }
 
-/// A mutant is wrong in one thing; a start and regular operation show none but its own.
+/// A mutant is wrong in one thing; a start and regular operation show none but its own. Of the further ones, many are about the
+/// start itself; `master_catalogue.rs` looks at them.
 #[test]
 fn most_mutants_start_up_like_the_original() {
     use MasterMutant::{PdinLiveWhileSdset, RecordAfterOperate, WrongArgBlockOffset};
-    for which in MasterMutant::ALL.iter().copied() {
+    for which in MasterMutant::ALL.iter().copied().take(12) {
         let (right, wrong) = seen(which, |options| {
             let mut bench = Bench::factory_with(plain(), options);
             bench.configure(&list(plain()));

@@ -114,8 +114,12 @@ fn stimuli() -> impl Strategy<Value = Stimulus> {
     ]
 }
 
+/// Any mutant but those whose results belong to no request: the bench refuses them.
 fn options() -> impl Strategy<Value = MasterOptions> {
-    (prop::option::of(prop::sample::select(MasterMutant::ALL.to_vec())), 0..=8u8, 1..=3u8)
+    let astray = [MasterMutant::ClientIdNotReturned, MasterMutant::ResultOfPort1];
+    let mutants: Vec<MasterMutant> =
+        MasterMutant::ALL.iter().copied().filter(|which| !astray.contains(which)).collect();
+    (prop::option::of(prop::sample::select(mutants)), 0..=8u8, 1..=3u8)
         .prop_map(|(mutant, latency, ports)| MasterOptions { mutant, latency, ports, ..MasterOptions::default() })
 }
 

@@ -128,10 +128,17 @@ impl PortConfig {
             Edition::V1_1 => (Some((reader.octet(), reader.octet())), 500, 100),
             Edition::Iec2022 => (None, reader.number(2), reader.number(2)),
         };
-        let record = match mutant {
+        let mut record = match mutant {
             Some(MasterMutant::WrongArgBlockOffset) if edition == Edition::Iec2022 => octets.get(14..37)?.to_vec(),
             _ => reader.0.get(..23)?.to_vec(),
         };
+        match mutant {
+            Some(MasterMutant::RecordAuthenticityZero) => record.get_mut(..8)?.fill(0),
+            Some(MasterMutant::RecordPortZero) => record.get_mut(8..9)?.fill(0),
+            Some(MasterMutant::RecordWatchdogSwapped) => record.get_mut(13..15)?.reverse(),
+            Some(MasterMutant::RecordTechParCrcZero) => record.get_mut(17..21)?.fill(0),
+            _ => {}
+        }
         let fields = reader.take(23);
         let (authenticity, protocol) = fields.split_at_checked(Authenticity::OCTETS)?;
         let authent_crc_right = Authenticity::from_octets(authenticity).is_ok();
@@ -269,15 +276,17 @@ pub fn authenticity(edition: Edition, fscp: [u8; 8]) -> Vec<u8> {
 }
 
 /// MasterIdent (base standard): an FS-Master with so many ports.
-pub fn master_ident(edition: Edition, ports: u8) -> Vec<u8> {
+pub fn master_ident(edition: Edition, ports: u8, mutant: Option<MasterMutant>) -> Vec<u8> {
     const VENDOR_ID: u16 = 0x04D2;
     const MASTER_ID: u32 = 1;
+    const MASTER: u8 = 1;
     const FS_MASTER: u8 = 3;
     const PORT_TYPE_FS_WITH_OSSDE: u8 = 4;
     let mut out = id::of(edition, 0x0000, 0x0001).to_be_bytes().to_vec();
     out.extend(VENDOR_ID.to_be_bytes());
     out.extend(MASTER_ID.to_be_bytes());
-    out.extend([FS_MASTER, 0, 0, ports]);
+    let master_type = if mutant == Some(MasterMutant::MasterTypeOfBase) { MASTER } else { FS_MASTER };
+    out.extend([master_type, 0, 0, ports]);
     out.extend((0..ports).map(|_| PORT_TYPE_FS_WITH_OSSDE));
     out
 }

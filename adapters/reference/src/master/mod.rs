@@ -116,7 +116,7 @@ impl FsMaster {
         let Some(unit) = self.port(number) else { return seen.push(Seen::Unsupported) };
         match stimulus {
             Stimulus::Plug { device, .. } => unit.plug(now, *device, seen),
-            Stimulus::Respond { response, .. } => unit.respond(response, fscp, seen),
+            Stimulus::Respond { response, .. } => unit.respond(now, response, fscp, seen),
             Stimulus::Raise { code, qualifier, .. } => unit.raise(*code, *qualifier, seen),
             Stimulus::Drive { line: line @ (Line::Cq | Line::Iq), level, .. } => unit.drive(now, *line, *level),
             Stimulus::Set { service, value, .. } if unit.set(*service, value, seen) => {}

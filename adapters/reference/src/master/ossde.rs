@@ -1,5 +1,7 @@
 //! A port in OSSDe mode: input filter, discrepancy, and the qualifier handler of 11.11.5 (Table 43), by hand from the figure.
 
+use super::MasterMutant;
+
 /// A line counts as changed once it has been stable for this long: test pulses are shorter (Table 8).
 const FILTER_NS: u64 = 1_000_000;
 /// Filtered lines may differ for this long (Table 8).
@@ -26,12 +28,12 @@ struct Input {
 }
 
 impl Input {
-    fn drive(&mut self, now: u64, level: bool) {
+    fn drive(&mut self, now: u64, level: bool, filter_ns: u64) {
         if level == self.raw {
             return;
         }
         self.raw = level;
-        self.due = (level != self.filtered).then_some(now + FILTER_NS);
+        self.due = (level != self.filtered).then_some(now + filter_ns);
     }
 
     fn pass(&mut self, now: u64) {
@@ -64,11 +66,12 @@ pub struct Ossde {
     fault: bool,
     first_check_due: Option<u64>,
     ack_q: bool,
+    mutant: Option<MasterMutant>,
 }
 
 impl Ossde {
     /// Put into OSSDe mode with these levels on C/Q and I/Q.
-    pub fn new(now: u64, cq: bool, iq: bool, ack_q: bool) -> Ossde {
+    pub fn new(now: u64, (cq, iq): (bool, bool), ack_q: bool, mutant: Option<MasterMutant>) -> Ossde {
         let input = |raw: bool| Input { raw, filtered: raw, due: None };
         let mut ossde = Ossde {
             state: State::PortOssdeCheck1,
@@ -78,6 +81,7 @@ impl Ossde {
             fault: false,
             first_check_due: Some(now + FIRST_CHECK_NS),
             ack_q,
+            mutant,
         };
         ossde.diagnose(now);
         ossde
@@ -85,12 +89,20 @@ impl Ossde {
 
     /// A level on C/Q.
     pub fn drive_cq(&mut self, now: u64, level: bool) {
-        self.cq.drive(now, level);
+        self.cq.drive(now, level, self.filter_ns());
     }
 
     /// A level on I/Q.
     pub fn drive_iq(&mut self, now: u64, level: bool) {
-        self.iq.drive(now, level);
+        self.iq.drive(now, level, self.filter_ns());
+    }
+
+    fn is(&self, mutant: MasterMutant) -> bool {
+        self.mutant == Some(mutant)
+    }
+
+    fn filter_ns(&self) -> u64 {
+        if self.is(MasterMutant::OssdeNoFilter) { 0 } else { FILTER_NS }
     }
 
     /// AckQ: its rising edge acknowledges a fault that has gone.
@@ -123,9 +135,17 @@ impl Ossde {
             State::PortOssdeCheck1 if self.first_check_due.is_some() || self.discrepancy_due.is_some() => {
                 State::PortOssdeCheck1
             }
+            State::PortOssdeCheck1 if faulty && self.is(MasterMutant::OssdeAskedWhileFault) => State::NoFaultAwaitAckQ4,
             State::PortOssdeCheck1 if faulty => State::OssdeFaultBad3,
+            State::PortOssdeCheck1 if self.is(MasterMutant::OssdeStartWantsAcknowledgment) => State::NoFaultAwaitAckQ4,
             State::PortOssdeCheck1 => State::OssdeOkGood2,
+            State::OssdeOkGood2 if self.is(MasterMutant::OssdeFaultMissed) => State::OssdeOkGood2,
+            State::NoFaultAwaitAckQ4 if self.is(MasterMutant::OssdeRequestStands) => State::NoFaultAwaitAckQ4,
             State::OssdeOkGood2 | State::NoFaultAwaitAckQ4 if faulty => State::OssdeFaultBad3,
+            State::OssdeFaultBad3 if !faulty && self.is(MasterMutant::OssdeRestartByItself) => State::OssdeOkGood2,
+            State::OssdeFaultBad3 if !faulty && self.ack_q && self.is(MasterMutant::OssdeAcknowledgmentAsLevel) => {
+                State::OssdeOkGood2
+            }
             State::OssdeFaultBad3 if !faulty => State::NoFaultAwaitAckQ4,
             state => state,
         };
@@ -139,13 +159,17 @@ impl Ossde {
             return;
         }
         match self.discrepancy_due {
-            None if !self.fault => self.discrepancy_due = Some(now + DISCREPANCY_NS),
+            None if !self.fault => self.discrepancy_due = Some(now + self.discrepancy_ns()),
             Some(due) if due <= now => {
                 self.discrepancy_due = None;
                 self.fault = true;
             }
             _ => {}
         }
+    }
+
+    fn discrepancy_ns(&self) -> u64 {
+        if self.is(MasterMutant::OssdeDiscrepancyTooShort) { 1_000_000 } else { DISCREPANCY_NS }
     }
 
     /// Octet 0 of FSInBuffer: bit 0 is C/Q, bit 1 is I/Q, as they are (10.5).
@@ -156,8 +180,10 @@ impl Ossde {
     /// What the services show.
     pub fn outputs(&self) -> Outputs {
         let good = self.state == State::OssdeOkGood2;
+        let both = self.cq.filtered && self.iq.filtered;
+        let one = self.cq.filtered || self.iq.filtered;
         Outputs {
-            on: good && self.cq.filtered && self.iq.filtered,
+            on: good && (both || one && self.is(MasterMutant::OssdeOneLineIsOn)),
             qualifier: good,
             ch_f_ack_req: self.state == State::NoFaultAwaitAckQ4,
         }

@@ -11,7 +11,7 @@ use super::scl::{Inputs, Outputs, Scl};
 use crate::device::{Pipeline, Sink};
 use fsct_adapters::{Identity, Line, Mode, Octets, Response, Seen, Source};
 use fsct_protocol::Edition;
-use fsct_protocol::fsp::INDEX_VERIFY;
+use fsct_protocol::fsp::{INDEX_AUTHENTICITY, INDEX_VERIFY};
 use fsct_protocol::spdu::Pd;
 
 const MS: u64 = 1_000_000;
@@ -178,7 +178,7 @@ impl PortUnit {
                 self.supply(true, seen);
                 self.phase = Phase::Digital;
                 if mode == port_mode::OSSDE && self.ossde.is_none() {
-                    self.ossde = Some(Ossde::new(now, self.levels.0, self.levels.1, self.inputs.ch_f_ack_c));
+                    self.ossde = Some(Ossde::new(now, self.levels, self.inputs.ch_f_ack_c, self.mutant));
                 }
             }
             _ => {
@@ -205,14 +205,23 @@ impl PortUnit {
         }
     }
 
+    fn is(&self, mutant: MasterMutant) -> bool {
+        self.mutant == Some(mutant)
+    }
+
     fn cycle(&mut self, now: u64, off_ms: u64, seen: &mut Sink<'_>) {
-        self.supply(false, seen);
+        self.supply(self.l_plus && self.is(MasterMutant::SupplyStaysOn), seen);
         self.phase = Phase::Off { until: now + off_ms * MS };
     }
 
     fn wait_on_ready_pulse(&mut self, now: u64, seen: &mut Sink<'_>) {
         self.supply(true, seen);
-        let wait = self.config.as_ref().map_or(0, |config| config.time_to_ready_ms);
+        if self.is(MasterMutant::WakeUpBeforeReadyPulse) {
+            self.phase = Phase::WakeUp { at: now + WAKE_UP_NS, done: 0 };
+            return;
+        }
+        let unit = if self.is(MasterMutant::TimeToReadyTooShort) { 10 } else { 1 };
+        let wait = self.config.as_ref().map_or(0, |config| config.time_to_ready_ms / unit);
         self.phase = Phase::WaitOnReadyPulse { until: now + wait * MS, high_since: self.levels.0.then_some(now) };
     }
 
@@ -226,8 +235,8 @@ impl PortUnit {
         }
         self.set_mode(Mode::Inactive, seen);
         match back_after_ms {
-            Some(ms) => self.cycle(now, ms, seen),
-            None => {
+            Some(ms) if !self.is(MasterMutant::PowerOffForGood) => self.cycle(now, ms, seen),
+            _ => {
                 self.power_off_by_service = true;
                 self.supply(false, seen);
                 self.phase = Phase::Rest;
@@ -256,8 +265,12 @@ impl PortUnit {
     /// A Device is connected, or none.
     pub fn plug(&mut self, now: u64, device: Option<Identity>, seen: &mut Sink<'_>) {
         self.device = device;
-        if self.device.is_none() && self.mode != Mode::Inactive {
+        let unnoticed = self.is(MasterMutant::ComlostUnnoticed);
+        if self.device.is_none() && self.mode != Mode::Inactive && !unnoticed {
             // COMLOST
+            if self.is(MasterMutant::SclAnewAfterComlost) {
+                self.scl = None;
+            }
             self.set_mode(Mode::Inactive, seen);
             self.start_again(now, seen);
         }
@@ -287,10 +300,10 @@ impl PortUnit {
     }
 
     /// The Device has answered the request that is open. What it says is not looked at: a refused record shows in the SCL.
-    pub fn respond(&mut self, _response: &Response, fscp: Option<[u8; 8]>, seen: &mut Sink<'_>) {
+    pub fn respond(&mut self, now: u64, _response: &Response, fscp: Option<[u8; 8]>, seen: &mut Sink<'_>) {
         self.asked = None;
         if matches!(self.phase, Phase::Record { .. }) {
-            self.operate(fscp, seen);
+            self.operate(now, fscp, seen);
         }
     }
 
@@ -332,7 +345,12 @@ impl PortUnit {
         }
         match self.phase {
             Phase::Off { until } if until <= now => self.restart(now, seen),
-            Phase::WaitOnReadyPulse { until, .. } if until <= now => self.start_again(now, seen),
+            Phase::WaitOnReadyPulse { until, .. } if until <= now => {
+                self.phase = Phase::Rest;
+                if !self.is(MasterMutant::NoSecondSupplyCycle) {
+                    self.start_again(now, seen);
+                }
+            }
             Phase::WakeUp { at, done } if at <= now => self.wake_up(now, done, fscp, seen),
             Phase::Record { until } if until <= now => self.phase = Phase::Fault,
             _ => {}
@@ -355,22 +373,27 @@ impl PortUnit {
         let Some(config) = &self.config else { return };
         let manual = config.port_mode != port_mode::IOL_AUTOSTART;
         let validated = manual && (1..=4).contains(&config.validation);
-        let other = validated && (config.vendor_id, config.device_id) != (device.vendor_id, device.device_id);
+        let other_vendor = config.vendor_id != device.vendor_id && !self.is(MasterMutant::VendorIdNotCompared);
+        let other = validated && (other_vendor || config.device_id != device.device_id);
         let too_fast = manual && config.cycle_time != 0 && config.cycle_time < device.min_cycle_time;
         let (safety, record) = (config.is_safety(), config.record.clone());
-        self.set_mode(Mode::Preoperate, seen);
+        if !self.is(MasterMutant::RecordInStartup) {
+            self.set_mode(Mode::Preoperate, seen);
+        }
         if other || too_fast {
             self.phase = Phase::Fault;
             return self.port_event(INCORRECT_DEVICE, seen);
         }
-        if !safety {
-            return self.operate(fscp, seen);
+        let again = self.is(MasterMutant::RecordAtFirstStartOnly) && self.scl.is_some();
+        if !safety || again || self.is(MasterMutant::RecordMissing) {
+            return self.operate(now, fscp, seen);
         }
-        if self.mutant == Some(MasterMutant::RecordAfterOperate) {
-            self.operate(fscp, seen);
+        if self.is(MasterMutant::RecordAfterOperate) {
+            self.operate(now, fscp, seen);
             return self.ask(now, INDEX_VERIFY, 0, Some(record), seen);
         }
-        self.ask(now, INDEX_VERIFY, 0, Some(record), seen);
+        let index = if self.is(MasterMutant::RecordToAuthenticity) { INDEX_AUTHENTICITY } else { INDEX_VERIFY };
+        self.ask(now, index, 0, Some(record), seen);
         self.phase = Phase::Record { until: now + REQUEST_NS };
     }
 
@@ -385,7 +408,7 @@ impl PortUnit {
         self.asked.is_some_and(|until| now < until)
     }
 
-    fn operate(&mut self, fscp: Option<[u8; 8]>, seen: &mut Sink<'_>) {
+    fn operate(&mut self, now: u64, fscp: Option<[u8; 8]>, seen: &mut Sink<'_>) {
         self.phase = Phase::Operate;
         self.set_mode(Mode::Operate, seen);
         let Some(config) = &self.config else { return };
@@ -395,16 +418,17 @@ impl PortUnit {
             .map_or((0, 0), |device| (device.pd_in.saturating_sub(spdu_in), device.pd_out.saturating_sub(spdu_out)));
         let nsr = config.nsr.unwrap_or(of_device);
         let start = config.is_safety() && self.scl.is_none();
-        let verified = start.then(|| verify::verify(self.edition, self.number, config, fscp));
+        let verified = start.then(|| verify::verify(self.edition, self.number, config, fscp, self.mutant));
         // The SPDU of an SCL that goes on stands all the while.
         if self.scl.is_none() {
             self.clear_buffers(nsr);
         }
         match verified {
             Some(Ok(verified)) => {
-                self.scl = Some(Scl::start(verified.config(self.mutant)));
+                self.scl = Some(Scl::start(now, verified.config(self.mutant)));
                 self.show_scl(seen);
             }
+            Some(Err(_)) if self.is(MasterMutant::VerifyEventMissing) => {}
             Some(Err(code)) => self.port_event(code, seen),
             None => {}
         }

@@ -6,10 +6,12 @@
 //! - SDset alone is no fault. ChFAck_C and setSD_C are looked at when a good answer is checked.
 //! - MTimer has expired once FSP_Watchdog has passed; an answer received at that very instant comes after the expiry.
 
+mod wire;
+
 use super::MasterMutant;
 use fsct_protocol::ProtMode;
-use fsct_protocol::crc::Reading;
-use fsct_protocol::spdu::{Control, Emitted, Pd, Port, View, Wire};
+use fsct_protocol::spdu::{Control, Emitted, Pd, Port, View};
+use wire::{emitted, port_num_good, signature_good};
 
 /// What the port configuration gives to the SCL.
 #[derive(Copy, Clone, Debug)]
@@ -93,24 +95,27 @@ pub struct Scl {
 
 impl Scl {
     /// T1 and T2: the preconditions are fulfilled, the first SPDU stands.
-    pub fn start(config: Config) -> Scl {
+    pub fn start(now: u64, config: Config) -> Scl {
+        let is = |mutant: MasterMutant| config.mutant == Some(mutant);
+        let mcount = u8::from(is(MasterMutant::FirstMcount1));
+        let set_sd = !is(MasterMutant::FirstSpduWithoutSetSd);
         let mut scl = Scl {
             config,
             state: State::WaitOnResponse2,
-            m_count: 0,
+            m_count: mcount,
             set_sd: true,
             ch_f_ack_req: false,
             ch_f_ack_c_e: false,
             d_count_i: None,
             m_timer: None,
-            spdu: emitted(
-                &config,
-                Pd::safe(config.pd_out.into()),
-                Control { mcount: 0, set_sd: true, ch_f_ack_req: false },
-            ),
+            spdu: emitted(&config, Pd::safe(config.pd_out.into()), Control { mcount, set_sd, ch_f_ack_req: false }),
             outputs: Outputs::initial(config.pd_in),
         };
         scl.use_sd();
+        scl.outputs.qualifier |= is(MasterMutant::QualifierGoodAtStart);
+        if is(MasterMutant::MTimerFromStart) {
+            scl.restart_m_timer(now);
+        }
         scl
     }
 
@@ -133,9 +138,9 @@ impl Scl {
     pub fn expire(&mut self, now: u64) {
         if self.state == State::WaitOnResponse7 {
             // T14
-            self.disarm();
+            self.disarm(MasterMutant::ArmedAfterTimeout, MasterMutant::AskedAfterTimeout);
         }
-        self.use_sd();
+        self.use_sd_but(MasterMutant::TimeoutKeepsPdin);
         if self.is(MasterMutant::McountNotReset) {
             self.next_m_count();
         } else {
@@ -158,7 +163,12 @@ impl Scl {
     /// The SPDU as the FS-Device has sent it.
     pub fn received(&mut self, now: u64, octets: &[u8], inputs: &Inputs) {
         let Ok(answer) = View::new(octets, self.config.mode, self.config.pd_in.into()) else { return };
-        if answer.is_all_zero() {
+        let zero_checked = match self.state {
+            State::WaitOnResponse2 => self.is(MasterMutant::AllZeroFirstAnswerChecked),
+            State::WaitOnResponse5 => self.is(MasterMutant::AllZeroAnswerChecked),
+            State::WaitOnResponse7 => false,
+        };
+        if answer.is_all_zero() && !zero_checked {
             return;
         }
         if self.is(MasterMutant::MTimerRestartedByRepetitions) && self.m_timer.is_some() {
@@ -167,23 +177,50 @@ impl Scl {
         let counter = answer.status().dcount_i;
         match self.state {
             State::WaitOnResponse2 => self.check_spdu_3(now, &answer, inputs),
-            State::WaitOnResponse5 if self.d_count_i != Some(counter) => self.check_spdu_3(now, &answer, inputs),
-            State::WaitOnResponse7 if counter == 7 - self.m_count => self.check_spdu_8(now, &answer, inputs),
+            State::WaitOnResponse5 if self.taken_in_5(counter) => self.check_spdu_3(now, &answer, inputs),
+            State::WaitOnResponse7 if self.taken_in_7(counter) => self.check_spdu_8(now, &answer, inputs),
             _ => {}
         }
+    }
+
+    /// Guard of T6: not old.
+    fn taken_in_5(&self, counter: u8) -> bool {
+        match self.config.mutant {
+            Some(MasterMutant::OldCounterChecked) => true,
+            Some(MasterMutant::ForeignCounterWaitedOut) => self.mirrored(counter),
+            _ => self.d_count_i != Some(counter),
+        }
+    }
+
+    /// Guard of T10: expected.
+    fn taken_in_7(&self, counter: u8) -> bool {
+        let waits = self.is(MasterMutant::OnlyNewCounterAfterFault) && self.d_count_i == Some(counter);
+        self.mirrored(counter) && !waits
+    }
+
+    fn mirrored(&self, counter: u8) -> bool {
+        let expected = if self.is(MasterMutant::DcountNotInverted) { self.m_count } else { 7 - self.m_count };
+        counter == expected
     }
 
     fn check_spdu_3(&mut self, now: u64, answer: &View<'_>, inputs: &Inputs) {
         if self.faults(answer) {
             // T7
-            self.use_sd();
-            self.next_m_count();
+            self.use_sd_but(MasterMutant::FaultKeepsPdin);
+            self.set_sd = !self.is(MasterMutant::SetSdMissingAfterFault);
+            match self.config.mutant {
+                Some(MasterMutant::FaultKeepsMcount) => {}
+                Some(MasterMutant::FaultResetsMcount) => self.m_count = 0,
+                _ => self.next_m_count(),
+            }
             self.fault();
             self.ch_f_ack_req = self.is(MasterMutant::ChFAckReqEarly);
             self.send_exceptional(now);
         } else {
             // T4
-            self.next_m_count();
+            if !(self.is(MasterMutant::McountStandsWhileSdset) && answer.status().sd_set) {
+                self.next_m_count();
+            }
             self.send_regular(now, answer, inputs);
         }
     }
@@ -191,7 +228,7 @@ impl Scl {
     fn check_spdu_8(&mut self, now: u64, answer: &View<'_>, inputs: &Inputs) {
         if self.faults(answer) {
             // T12
-            self.disarm();
+            self.disarm(MasterMutant::ArmedAfterFault, MasterMutant::AskedAfterFault);
             self.use_sd();
             self.next_m_count();
             self.fault();
@@ -199,20 +236,25 @@ impl Scl {
         }
         let level = self.is(MasterMutant::AcknowledgmentAsLevel);
         let unasked = self.is(MasterMutant::RestartWithoutAcknowledgment);
-        if unasked || inputs.ch_f_ack_c && (self.ch_f_ack_c_e || level) {
+        let pressed = inputs.ch_f_ack_c != self.is(MasterMutant::AcknowledgmentOnFallingEdge);
+        if unasked || pressed && (self.ch_f_ack_c_e || level) {
             // T11
-            self.disarm();
+            self.disarm(MasterMutant::ArmedAfterAcknowledgment, MasterMutant::AskedAfterAcknowledgment);
             self.outputs.faults_s = false;
             self.next_m_count();
+            if self.is(MasterMutant::AcknowledgmentResetsMcount) {
+                self.m_count = 1;
+            }
             return self.send_regular(now, answer, inputs);
         }
         // T13
-        self.ch_f_ack_req = true;
-        self.outputs.ch_f_ack_req_s = true;
-        if !inputs.ch_f_ack_c {
+        self.ch_f_ack_req = !(self.is(MasterMutant::ChFAckReqBlinks) && self.ch_f_ack_req);
+        self.outputs.ch_f_ack_req_s = !self.is(MasterMutant::ChFAckReqSMissing);
+        if !pressed {
             self.ch_f_ack_c_e = true;
         }
         self.use_sd();
+        self.set_sd = !self.is(MasterMutant::SetSdMissingWhileAsked);
         if self.is(MasterMutant::QualifierReleasedEarly) {
             self.outputs.qualifier = true;
         }
@@ -224,19 +266,24 @@ impl Scl {
     fn faults(&mut self, answer: &View<'_>) -> bool {
         let status = answer.status();
         self.d_count_i = Some(status.dcount_i);
-        let port = self.config.port;
-        let port_good = answer.port_num() == port.inverted()
-            || self.is(MasterMutant::PlainPortNumAccepted) && answer.port_num() == port.number();
-        let m_comm_err =
-            !(answer.signature_matches(Reading::Preset) && port_good && status.dcount_i == 7 - self.m_count);
-        m_comm_err || status.d_comm_err || status.d_timeout && !self.is(MasterMutant::DTimeoutIgnored)
+        let counter_good = self.mirrored(status.dcount_i) || self.is(MasterMutant::CounterNotChecked);
+        let good = signature_good(&self.config, answer) && port_num_good(&self.config, answer) && counter_good;
+        let reported = match self.config.mutant {
+            Some(MasterMutant::DTimeoutIgnored) => status.d_comm_err,
+            Some(MasterMutant::DCommErrIgnored) => status.d_timeout,
+            Some(MasterMutant::DCommErrNeedsSdset) => status.d_comm_err && status.sd_set || status.d_timeout,
+            Some(MasterMutant::SdsetIsFault) => status.d_comm_err || status.d_timeout || status.sd_set,
+            _ => status.d_comm_err || status.d_timeout,
+        };
+        !good || reported
     }
 
     /// State 4, T5: process data or SD as the answer and setSD_C ask.
     fn send_regular(&mut self, now: u64, answer: &View<'_>, inputs: &Inputs) {
         let pd_in = Pd::new(answer.pd()).unwrap_or(Pd::safe(answer.pd().len()));
-        if answer.status().sd_set || inputs.set_sd_c {
-            self.outputs.sd_set_s = true;
+        let sd_set = answer.status().sd_set && !self.is(MasterMutant::SdsetIgnored);
+        if sd_set || inputs.set_sd_c {
+            self.outputs.sd_set_s = inputs.set_sd_c || !self.is(MasterMutant::SdsetNotReported);
             self.outputs.pd_in = Pd::safe(self.config.pd_in.into());
             if self.is(MasterMutant::PdinLiveWhileSdset) {
                 self.outputs.pd_in = pd_in;
@@ -245,18 +292,25 @@ impl Scl {
             self.outputs.sd_set_s = false;
             self.outputs.pd_in = pd_in;
         }
-        self.set_sd = inputs.set_sd_c;
+        self.set_sd = inputs.set_sd_c && !self.is(MasterMutant::SetSdBitMissing);
         self.qualify();
-        let pd_out = if inputs.set_sd_c { Pd::safe(self.config.pd_out.into()) } else { inputs.pd_out };
-        self.send(pd_out);
-        self.restart_m_timer(now);
+        let safe = inputs.set_sd_c && !self.is(MasterMutant::PdoutLiveWhileSetSd);
+        self.send(if safe { Pd::safe(self.config.pd_out.into()) } else { inputs.pd_out });
+        if !(self.is(MasterMutant::MTimerStartedOnce) && self.m_timer.is_some()) {
+            self.restart_m_timer(now);
+        }
         self.state = State::WaitOnResponse5;
     }
 
     /// State 6, T9: SD.
     fn send_exceptional(&mut self, now: u64) {
-        self.send(Pd::safe(self.config.pd_out.into()));
+        let safe = Pd::safe(self.config.pd_out.into());
+        let before = self.spdu.octets().get(..self.config.pd_out.into()).and_then(Pd::new).unwrap_or(safe);
+        self.send(if self.is(MasterMutant::ExceptionalSpduWithData) { before } else { safe });
         self.restart_m_timer(now);
+        if self.is(MasterMutant::MTimerStoppedAfterFault) {
+            self.m_timer = None;
+        }
         self.state = State::WaitOnResponse7;
     }
 
@@ -272,6 +326,15 @@ impl Scl {
         self.qualify();
     }
 
+    /// SD is in use; `keeps` is the fault that leaves PDin_M as it is.
+    fn use_sd_but(&mut self, keeps: MasterMutant) {
+        let before = self.outputs.pd_in;
+        self.use_sd();
+        if self.is(keeps) {
+            self.outputs.pd_in = before;
+        }
+    }
+
     fn fault(&mut self) {
         self.outputs.faults_s = true;
         self.qualify();
@@ -279,13 +342,19 @@ impl Scl {
 
     /// GOOD when neither FAULTS_S nor SDset_S says otherwise (11.11.4).
     fn qualify(&mut self) {
-        self.outputs.qualifier = !(self.outputs.faults_s || self.outputs.sd_set_s);
+        let sd = self.outputs.sd_set_s && !self.is(MasterMutant::QualifierIgnoresSdset);
+        self.outputs.qualifier = !(self.outputs.faults_s || sd);
     }
 
-    fn disarm(&mut self) {
-        self.ch_f_ack_req = false;
-        self.outputs.ch_f_ack_req_s = false;
-        self.ch_f_ack_c_e = false;
+    /// No acknowledgment is asked for or prepared; the faults that leave one of the two standing.
+    fn disarm(&mut self, armed: MasterMutant, asked: MasterMutant) {
+        if !self.is(asked) {
+            self.ch_f_ack_req = false;
+            self.outputs.ch_f_ack_req_s = false;
+        }
+        if !self.is(armed) {
+            self.ch_f_ack_c_e = false;
+        }
     }
 
     fn next_m_count(&mut self) {
@@ -301,15 +370,17 @@ impl Scl {
     }
 
     fn watchdog_ns(&self) -> u64 {
-        u64::from(self.config.watchdog_ms.max(1)) * 1_000_000
+        let ns = |ms: u16| u64::from(ms.max(1)) * 1_000_000;
+        let ms = self.config.watchdog_ms;
+        match self.config.mutant {
+            Some(MasterMutant::WatchdogEarly) => ns(ms) / 4 * 3,
+            Some(MasterMutant::WatchdogLate) => ns(ms) / 4 * 5,
+            Some(MasterMutant::WatchdogOctetsSwapped) => ns(ms.swap_bytes()),
+            _ => ns(ms),
+        }
     }
 
     fn is(&self, mutant: MasterMutant) -> bool {
         self.config.mutant == Some(mutant)
     }
-}
-
-fn emitted(config: &Config, pd: Pd, control: Control) -> Emitted {
-    let wire = Wire { pd, port_num: config.port.number(), octet: control.to_octet(), signature: None };
-    wire.emit(config.mode, Reading::Preset)
 }

@@ -1,7 +1,7 @@
 //! The SMI services of the reference FS-Master: requests checked in the stated order, results with their ArgBlocks (10.2).
 
-use super::FsMaster;
 use super::blocks::{self, PortConfig, id};
+use super::{FsMaster, MasterMutant};
 use crate::device::Sink;
 use fsct_adapters::smi::{error_info, job_error};
 use fsct_adapters::{Mode, Seen, SmiRequest, SmiResult, SmiService};
@@ -93,18 +93,42 @@ impl FsMaster {
         let positive = outcome.is_ok();
         let octets = match (outcome, edition) {
             (Ok(block), _) => block,
-            (Err(refusal), Edition::V1_1) => refusal.number(edition).to_be_bytes().to_vec(),
+            (Err(refusal), Edition::V1_1) => self.number(refusal).to_be_bytes().to_vec(),
             (Err(refusal), Edition::Iec2022) => {
-                [id::JOB_ERROR, request.expected, refusal.number(edition)].map(u16::to_be_bytes).concat()
+                [id::JOB_ERROR, request.expected, self.number(refusal)].map(u16::to_be_bytes).concat()
             }
         };
         let named = request.octets.first_chunk().map_or(shape.request, |id| u16::from_be_bytes(*id));
-        let (reference, length) = match edition {
+        let (mut reference, mut length) = match edition {
             Edition::V1_1 => (0, if positive { octets.len() as u16 } else { 0 }),
             Edition::Iec2022 => (named, octets.len() as u16),
         };
-        let (port, client_id) = (request.port, request.client_id);
+        let (mut port, mut client_id) = (request.port, request.client_id);
+        match self.options.mutant {
+            Some(MasterMutant::RefArgBlockIdMissing) => reference = 0,
+            Some(MasterMutant::ArgBlockLengthWithoutId) => length = length.saturating_sub(2),
+            Some(MasterMutant::ResultOfPort1) => port = 1,
+            Some(MasterMutant::ClientIdNotReturned) => client_id = 0,
+            _ => {}
+        }
         seen.push(Seen::Smi(Box::new(SmiResult { port, client_id, positive, reference, length, octets })));
+    }
+
+    fn is(&self, mutant: MasterMutant) -> bool {
+        self.options.mutant == Some(mutant)
+    }
+
+    /// ErrorInfo or JobError.
+    fn number(&self, refusal: Refusal) -> u16 {
+        match (self.variant.edition, refusal) {
+            (Edition::Iec2022, Refusal::PortNumInvalid) if self.is(MasterMutant::WrongPortToldOtherwise) => {
+                job_error::ARGBLOCK_INCONSISTENT
+            }
+            (Edition::V1_1, Refusal::DeviceNotInOperate) if self.is(MasterMutant::NoComToldOtherwise) => {
+                error_info::OUT_OF_RANGE
+            }
+            (edition, refusal) => refusal.number(edition),
+        }
     }
 
     /// Port, ArgBlockID, length and ExpArgBlockID, in this order.
@@ -132,13 +156,18 @@ impl FsMaster {
                 _ => Ok(()),
             };
         }
-        if octets.first_chunk() != Some(&shape.request.to_be_bytes()) {
-            return Err(Refusal::ArgBlockNotSupported);
-        }
-        if !(shape.octets.0..=shape.octets.1).contains(&octets.len()) {
+        let named = octets.first_chunk() == Some(&shape.request.to_be_bytes());
+        let fits = (shape.octets.0..=shape.octets.1).contains(&octets.len());
+        if !fits && self.is(MasterMutant::LengthBeforeArgBlockId) {
             return Err(Refusal::ArgBlockLengthInvalid);
         }
-        if request.expected != shape.result {
+        if !named && !self.is(MasterMutant::ArgBlockIdUnchecked) {
+            return Err(Refusal::ArgBlockNotSupported);
+        }
+        if !fits && !self.is(MasterMutant::ArgBlockLengthUnchecked) {
+            return Err(Refusal::ArgBlockLengthInvalid);
+        }
+        if request.expected != shape.result && !self.is(MasterMutant::ExpectedBlockUnchecked) {
             return Err(Refusal::ArgBlockInconsistent);
         }
         Ok(())
@@ -151,7 +180,7 @@ impl FsMaster {
         let octets = &request.octets;
         match request.service {
             SmiService::MasterIdentification => {
-                return Ok(blocks::master_ident(edition, self.ports.len() as u8));
+                return Ok(blocks::master_ident(edition, self.ports.len() as u8, self.options.mutant));
             }
             SmiService::FsMasterAccess => return self.access(octets, seen),
             _ => {}
@@ -159,6 +188,10 @@ impl FsMaster {
         let now = self.now;
         let index = usize::from(request.port) - 1;
         let mutant = self.options.mutant;
+        let is = |fault: MasterMutant| mutant == Some(fault);
+        if request.service == SmiService::PortStatus && is(MasterMutant::PortStatusOfPort1) {
+            return Ok(self.ports.first().map(|port| port.status().to_octets(edition)).unwrap_or_default());
+        }
         let Some(port) = self.ports.get_mut(index) else { return Err(Refusal::PortNumInvalid) };
         let safety = port.config.as_ref().is_some_and(PortConfig::is_safety);
         match request.service {
@@ -168,8 +201,8 @@ impl FsMaster {
                 Ok(nothing())
             }
             SmiService::ReadbackPortConfiguration => Ok(match &port.config {
-                Some(config) => config.octets.clone(),
-                None => {
+                Some(config) if !is(MasterMutant::ReadbackOfFactory) => config.octets.clone(),
+                _ => {
                     let mut empty = block(&[]);
                     empty.resize(blocks::config_octets(edition), 0);
                     empty
@@ -245,6 +278,8 @@ impl FsMaster {
                     _ => return Err(Refusal::DeviceNotInOperate),
                 };
                 let output = [port.fs_out().as_slice(), &port.nsr_out].concat();
+                let (input, output) =
+                    if is(MasterMutant::FsPdInOutSwapped) { (output, input) } else { (input, output) };
                 let lengths = (input.len() as u8, output.len() as u8);
                 Ok(block(&[&[0, 1, lengths.0], input.as_slice(), &[lengths.1], &output].concat()))
             }
@@ -272,6 +307,10 @@ impl FsMaster {
                 return Err(Refusal::ArgBlockInconsistent);
             }
         }
-        Ok(blocks::authenticity(edition, self.fscp.unwrap_or_default()))
+        let mut fscp = self.fscp.unwrap_or_default();
+        if self.is(MasterMutant::AuthenticitySwapped) {
+            fscp.rotate_left(4);
+        }
+        Ok(blocks::authenticity(edition, fscp))
     }
 }

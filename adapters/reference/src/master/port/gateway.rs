@@ -2,6 +2,7 @@
 
 use super::{Phase, PortUnit};
 use crate::device::Sink;
+use crate::master::MasterMutant;
 use crate::master::blocks::{PortConfig, PortStatus, port_mode};
 use crate::master::ossde::Ossde;
 use crate::master::scl::Outputs;
@@ -47,6 +48,9 @@ impl PortUnit {
         if !matches!(self.mode, Mode::Preoperate | Mode::Operate) {
             return;
         }
+        if self.is(MasterMutant::DeviceEventDropped) {
+            return;
+        }
         let lasting = matches!(qualifier & TYPE, TYPE_WARNING | TYPE_ERROR);
         match qualifier & MODE {
             MODE_APPEARS if lasting => self.pend(qualifier, code),
@@ -58,7 +62,7 @@ impl PortUnit {
 
     /// A DiagEntry, once.
     pub(super) fn pend(&mut self, qualifier: u8, code: u16) {
-        if !self.diags.contains(&(qualifier, code)) {
+        if !self.diags.contains(&(qualifier, code)) && !self.is(MasterMutant::DiagNotListed) {
             self.diags.push((qualifier, code));
         }
     }
@@ -72,7 +76,13 @@ impl PortUnit {
         // Process data of another length than configured are no message.
         let length = usize::from(spdu_in) + self.nsr_in.len();
         if let Some(octets) = received.map(Octets::as_slice).filter(|octets| octets.len() == length) {
-            let (safety, other) = octets.split_at_checked(spdu_in.into())?;
+            let before = self.is(MasterMutant::NsrBeforeSpdu);
+            let (safety, other) = if before {
+                let (other, safety) = octets.split_at_checked(self.nsr_in.len())?;
+                (safety, other)
+            } else {
+                octets.split_at_checked(spdu_in.into())?
+            };
             self.fs_in = safety.to_vec();
             self.nsr_in.iter_mut().zip(other).for_each(|(octet, new)| *octet = *new);
             if let Some(scl) = &mut self.scl {
@@ -80,7 +90,11 @@ impl PortUnit {
                 self.show_scl(seen);
             }
         }
-        let image = [self.fs_out(), self.nsr_out.clone()].concat();
+        let mut image = [self.fs_out(), self.nsr_out.clone()];
+        if self.is(MasterMutant::NsrBeforeSpdu) {
+            image.reverse();
+        }
+        let image = image.concat();
         Some(self.images.pass(Octets::new(&image).unwrap_or_default()))
     }
 
@@ -167,7 +181,7 @@ impl PortUnit {
                 _ => info::DI_CQ,
             },
             (Phase::Fault, _) => info::PORT_DIAG,
-            (Phase::Operate, _) if self.scl.is_some() => info::SCL_ENABLED,
+            (Phase::Operate, _) if self.scl.is_some() && !self.is(MasterMutant::SclStatusOperate) => info::SCL_ENABLED,
             (Phase::Operate, _) => info::OPERATE,
             (_, Mode::Preoperate) if self.edition == Edition::V1_1 => info::PREOPERATE,
             (_, Mode::Preoperate) => info::PORT_DIAG,

@@ -36,23 +36,33 @@ impl Verified {
 /// Without authenticity from the upper-level system there is nothing to compare with. With FSP_TechParCRC 0 iec2022 does not
 /// compare either. That edition has no EventCode for the port and the FS-Master takes FSP_Port as it is. What has no EventCode
 /// in both editions, FSP_ProtVersion, FSP_ProtMode and lengths that do not go with it, is told as FSP_ProtParCRC.
-pub fn verify(edition: Edition, number: u8, config: &PortConfig, fscp: Option<[u8; 8]>) -> Result<Verified, u16> {
+pub fn verify(
+    edition: Edition,
+    number: u8,
+    config: &PortConfig,
+    fscp: Option<[u8; 8]>,
+    mutant: Option<MasterMutant>,
+) -> Result<Verified, u16> {
+    let is = |fault: MasterMutant| mutant == Some(fault);
     let code = |digit: u16| match edition {
+        Edition::Iec2022 if is(MasterMutant::VerifyEventOfV11) => 0xB000 + digit,
         Edition::V1_1 => 0xB000 + digit,
         Edition::Iec2022 => 0x2000 + digit,
     };
     let right = |right: bool, digit: u16| if right { Ok(()) } else { Err(code(digit)) };
     let (authenticity, protocol) = (&config.authenticity, &config.protocol);
     let compared = protocol.tech_par_crc != 0 || edition == Edition::V1_1;
-    let given = |fscp: [u8; 8]| u64::from_be_bytes(fscp);
+    let mask = if is(MasterMutant::Authenticity2NotCompared) { !0 << 32 } else { !0 };
     let own = u64::from(authenticity.authenticity_1) << 32 | u64::from(authenticity.authenticity_2);
+    let agrees = |fscp: [u8; 8]| u64::from_be_bytes(fscp) & mask == own & mask;
+    let port_compared = edition == Edition::V1_1 && !is(MasterMutant::FspPortNotCompared);
 
-    right(config.authent_crc_right, AUTHENT_CRC)?;
-    right(config.prot_par_crc_right, PROT_PAR_CRC)?;
-    right(protocol.watchdog_ms != 0, WATCHDOG)?;
-    right(!compared || fscp.is_none_or(|fscp| given(fscp) == own), AUTHENTICATION_CODE)?;
-    right(edition == Edition::Iec2022 || authenticity.port == number, AUTHENTICATION_PORT)?;
-    right(protocol.version == 1, PROT_PAR_CRC)?;
+    right(config.authent_crc_right || is(MasterMutant::AuthentCrcNotChecked), AUTHENT_CRC)?;
+    right(config.prot_par_crc_right || is(MasterMutant::ProtParCrcNotChecked), PROT_PAR_CRC)?;
+    right(protocol.watchdog_ms != 0 || is(MasterMutant::Watchdog0Accepted), WATCHDOG)?;
+    right(!compared || fscp.is_none_or(agrees), AUTHENTICATION_CODE)?;
+    right(!port_compared || authenticity.port == number, AUTHENTICATION_PORT)?;
+    right(protocol.version == 1 || is(MasterMutant::ProtVersionNotChecked), PROT_PAR_CRC)?;
     let mode = ProtMode::from_code(protocol.mode).ok_or(code(PROT_PAR_CRC))?;
     let pd = |spdu: u8| {
         let pd = usize::from(spdu).checked_sub(mode.spdu_octets(0)).filter(|pd| *pd <= mode.max_pd());
