@@ -3,7 +3,7 @@
 use crate::guard::{Guarded, guarded, note_places};
 use crate::test::{Outcome, Test};
 use fsct_adapters::{Dut, DutError, Role};
-use fsct_harness::campaign::{Bench, Run};
+use fsct_harness::campaign::{Bench, Judges, Run};
 use fsct_harness::library::Library;
 use fsct_harness::oracle::Mask;
 use fsct_harness::plan::{Plan, Planned, Selection, plan};
@@ -208,6 +208,7 @@ impl Judge {
             seed: self.seed,
             command: String::new(),
             interrupted: &AtomicBool::new(false),
+            judges: Judges::default(),
         };
         let mut outcome = None;
         let replay = format!("{} '{}'", self.command, planned.key);

@@ -6,7 +6,7 @@ use divan::{Bencher, black_box};
 use fsct_adapters::{
     Dut, Line, Listener, Observation, Octets, Response, Role, SmiRequest, SmiService, Stimulus, Variant, connect, serve,
 };
-use fsct_harness::campaign::{Bench, Run};
+use fsct_harness::campaign::{Bench, Judges, Run};
 use fsct_harness::case::model::Configure;
 use fsct_harness::library::Library;
 use fsct_harness::oracle::Setup;
@@ -278,6 +278,7 @@ fn whole_suite(bencher: Bencher, role: &str) {
         seed: 1,
         command: String::new(),
         interrupted: &interrupted,
+        judges: Judges::default(),
     };
     bencher.counter(ItemsCount::new(plan.cases.len())).bench(|| {
         let mut cases = 0;

@@ -100,6 +100,16 @@ impl Bench {
     }
 }
 
+/// Who has a say in a verdict.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub enum Judges {
+    /// The oracle, at every exchange, and the expectations of the case.
+    #[default]
+    OracleAndCase,
+    /// The expectations of the case alone: to see what a case is worth by itself. Nothing is judged so for a user.
+    CaseAlone,
+}
+
 /// What a run needs to know.
 pub struct Run<'r> {
     /// Cases, start conditions, ledger, tolerances.
@@ -114,6 +124,8 @@ pub struct Run<'r> {
     pub command: String,
     /// Set when the user asks to stop.
     pub interrupted: &'r AtomicBool,
+    /// Who judges.
+    pub judges: Judges,
 }
 
 impl Run<'_> {
@@ -183,6 +195,7 @@ impl Run<'_> {
         }
         let Bench { dut, description, .. } = bench;
         let mut session = Session::new(dut.as_mut(), description, self.profile, setups, self.interrupted);
+        session.links.iter_mut().for_each(|link| link.case_alone = self.judges == Judges::CaseAlone);
         let judging = Judging {
             clauses: self.clauses(planned),
             demands: self.demands(planned),

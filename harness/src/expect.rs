@@ -6,8 +6,8 @@ use crate::case::model::{Expectation, Expected, Key};
 use crate::session::{Reply, Session};
 use crate::tester::Tester;
 use crate::trace::hex;
-use fsct_adapters::{Octets, Pco};
-use fsct_protocol::spdu::succ;
+use fsct_adapters::{Octets, Pco, Role};
+use fsct_protocol::spdu::{View, succ};
 use fsct_reports::record::Check;
 
 /// What stood before a step, for `unchanged`.
@@ -39,6 +39,7 @@ pub fn judge(expectation: &Expectation, before: &Before, session: &Session<'_>, 
             answer_field(expectation, before, session, tester)?
         }
         Key::Mcount | Key::SetSd | Key::ChFAckReq => spdu_field(expectation, before, session)?,
+        Key::PortNum | Key::Reserved => frame_field(expectation, session),
         Key::Pdin => pdin(expectation, session)?,
         Key::Pdout => pdout(expectation, session)?,
         Key::Image => image(expectation, before, session),
@@ -87,6 +88,27 @@ fn answer_field(expectation: &Expectation, before: &Before, session: &Session<'_
         _ => number(expectation),
     };
     Some(compare(expected, observed))
+}
+
+/// What an SPDU of either side carries beside counters and data.
+fn frame_field(expectation: &Expectation, session: &Session<'_>) -> Judged {
+    let (view, setup) = (session.answer(), session.setup());
+    if expectation.key == Key::PortNum {
+        let right = match setup.role {
+            Role::Device => setup.port.inverted(),
+            Role::Master => setup.port.number(),
+        };
+        let expected = if expectation.value == Expected::Right { right.into() } else { number(expectation) };
+        return compare(expected, view.map(|view| view.port_num().into()));
+    }
+    let reserved = |view: View<'_>| {
+        let known = match setup.role {
+            Role::Device => view.status().to_octet(),
+            Role::Master => view.control().to_octet(),
+        };
+        u32::from(view.octet() & !known)
+    };
+    compare(number(expectation), view.map(reserved))
 }
 
 /// What follows the SPDU in the image.

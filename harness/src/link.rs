@@ -61,7 +61,9 @@ pub struct Link {
     pub ack: bool,
     /// The conformant FS-Device that keeps the port in operation while the case is about another.
     pub keeper: Option<Keeper>,
-    /// The SCL was not judged because nobody can say whether it may start.
+    /// The case alone judges: what the oracle cannot explain ends its part in the case and nothing else.
+    pub case_alone: bool,
+    /// The SCL is not judged: nobody can say whether it may start, or the oracle has no part in the case any more.
     unjudged: bool,
     /// OSSDe transitions of earlier configurations in the same case.
     ossde_before: [u64; 6],
@@ -92,6 +94,7 @@ impl Link {
             unsettled: None,
             ack: false,
             keeper: None,
+            case_alone: false,
             unjudged: false,
             ossde_before: [0; 6],
         }
@@ -152,10 +155,21 @@ impl Link {
         match (&mut self.ossde, self.unsettled) {
             (Some(ossde), Some(at)) if at < upto => {
                 self.unsettled = None;
-                ossde.settle(at)
+                let outcome = ossde.settle(at);
+                self.heed(outcome)
             }
             _ => Ok(()),
         }
+    }
+
+    /// What the oracle says, if it has a say.
+    fn heed(&mut self, outcome: Result<(), Mismatch>) -> Result<(), Mismatch> {
+        if outcome.is_err() && self.case_alone {
+            self.unjudged = true;
+            self.leave_ossde();
+            return Ok(());
+        }
+        outcome
     }
 
     /// One exchange: what the DUT received and what it presented.
@@ -175,7 +189,8 @@ impl Link {
             return Ok(());
         }
         let (sent, image) = (sent.map(Octets::as_slice), self.image.as_ref().map(Octets::as_slice));
-        self.oracle.exchange(at, sent, image, &self.app)
+        let outcome = self.oracle.exchange(at, sent, image, &self.app);
+        self.heed(outcome)
     }
 
     /// The octets as they go out: behind a bare SPDU the non-safety data of the plugged Device follow as 0, because the length

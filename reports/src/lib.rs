@@ -5,6 +5,7 @@ mod chart;
 mod compare;
 pub mod decode;
 mod duts;
+pub mod gauntlet;
 mod html;
 mod journal;
 mod junit;

@@ -441,6 +441,10 @@ pub enum Key {
     ChFAckReq,
     /// Process data of the SPDU.
     Pdout,
+    /// PortNum of the SPDU presented.
+    PortNum,
+    /// The reserved bits of its status or control octet.
+    Reserved,
     /// The image as a whole.
     Image,
     /// What follows the SPDU in it.
@@ -491,7 +495,7 @@ const BOTH: &[Role] = &[Role::Device, Role::Master];
 
 impl Key {
     /// All keys as written in cases, and the side they are for; fields of ArgBlocks are `block.` and their name.
-    pub const ALL: [(Key, &'static str, &'static [Role]); 29] = [
+    pub const ALL: [(Key, &'static str, &'static [Role]); 31] = [
         (Key::DcountI, "DCount_i", DEVICE),
         (Key::SdSet, "SDset", DEVICE),
         (Key::DcommErr, "DCommErr", DEVICE),
@@ -501,6 +505,8 @@ impl Key {
         (Key::SetSd, "setSD", MASTER),
         (Key::ChFAckReq, "ChFAckReq", MASTER),
         (Key::Pdout, "PDout", MASTER),
+        (Key::PortNum, "PortNum", BOTH),
+        (Key::Reserved, "reserved", BOTH),
         (Key::Image, "image", BOTH),
         (Key::Nsr, "NSR", BOTH),
         (Key::PdoutD, "app.PDout_D", DEVICE),
@@ -558,7 +564,9 @@ impl Key {
             Key::Pdin => "11.3.3 Table 29",
             Key::Mcount | Key::SetSd | Key::ChFAckReq => "11.4.6 Table 31, 11.5.2 Table 38",
             Key::Pdout => "11.3.2 Table 28",
-            Key::Image => "11.5",
+            Key::PortNum => "11.4.5",
+            Key::Reserved => "11.4.6 Tables 31 and 32",
+            Key::Image => "11.4.7, 11.5",
             Key::Nsr => "10.5, 9.1.2",
             Key::PdoutD | Key::SetSdDc | Key::ChFAckReqDc => "11.3.3 Table 29",
             Key::PdinM | Key::SdsetS | Key::ChFAckReqS | Key::FaultsS => "11.3.2 Table 28",

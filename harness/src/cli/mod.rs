@@ -7,6 +7,7 @@ mod check;
 mod crc;
 mod doctor;
 mod explain;
+mod gauntlet;
 mod host;
 mod list;
 mod report;
@@ -59,6 +60,8 @@ enum Command {
     Simulate(simulate::Args),
     /// Render reports from a record once more
     Report(report::Args),
+    /// Run every mutant of the reference DUTs against the suites: the kill matrix
+    Gauntlet(gauntlet::Args),
     /// Prove the known answers for the CRC signatures
     Vectors(vectors::Args),
     /// Compute the signature of octets
@@ -83,6 +86,7 @@ pub fn main() -> ExitCode {
         Command::Explain(args) => explain::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Report(args) => report::run(&args),
+        Command::Gauntlet(args) => gauntlet::run(&args),
         Command::Vectors(args) => vectors::run(&args),
         Command::Crc(args) => crc::run(&args),
         Command::Host(args) => host::run(&args),

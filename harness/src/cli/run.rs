@@ -1,7 +1,7 @@
 //! `fsct run`: judges a DUT and leaves the record and the reports.
 
 use super::{Cases, RIG, USAGE, bench, colour, fail, print, show};
-use crate::campaign::{Bench, Run, dut_info};
+use crate::campaign::{Bench, Judges, Run, dut_info};
 use crate::library::Library;
 use crate::oracle::{Mask, Tolerances};
 use crate::plan::{Plan, Selection, plan, unreached};
@@ -188,6 +188,7 @@ fn execute(args: &Args) -> Result<u8, u8> {
                 seed: args.seed,
                 command: command(args, one.url, one.profile),
                 interrupted: &interrupted,
+                judges: Judges::default(),
             };
             run.execute(
                 plan,

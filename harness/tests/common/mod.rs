@@ -1,7 +1,7 @@
 //! Runs the embedded suite on a DUT of the tests' choice.
 
 use fsct_adapters::{Dut, DutError};
-use fsct_harness::campaign::{Bench, Run};
+use fsct_harness::campaign::{Bench, Judges, Run};
 use fsct_harness::library::Library;
 use fsct_harness::plan::{Plan, Selection, plan, unreached};
 use fsct_reports::record::CaseRecord;
@@ -45,6 +45,7 @@ pub fn run_with(
         seed: 1,
         command: "fsct run".into(),
         interrupted: &interrupted,
+        judges: Judges::default(),
     };
     let mut cases = Vec::new();
     let kept = run.execute(&plan, bench, connect, |case| {

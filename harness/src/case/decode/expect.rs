@@ -109,6 +109,8 @@ fn values(key: Key) -> (Words, Option<u32>, bool) {
         }
         Key::Qualifier => (&[(Expected::Number(1), "GOOD"), (Expected::Number(0), "BAD")], None, false),
         Key::Pdin | Key::Pdout => (&[(Expected::Live, "live"), (Expected::Safe, "safe")], None, true),
+        Key::PortNum => (&[(Expected::Right, "right")], Some(0xFF), false),
+        Key::Reserved => (&[], Some(0xFF), false),
         Key::Image => {
             (&[(Expected::Safe, "zero"), (Expected::Unchanged, "unchanged"), (Expected::Answer, "answer")], None, false)
         }

@@ -1,0 +1,86 @@
+//! `fsct gauntlet`: every mutant of the reference DUTs against the suites.
+
+use super::{Cases, RIG, fail, print, show};
+use crate::gauntlet::matrix;
+use fsct_adapters::Role;
+use fsct_reports::gauntlet::{Gauntlet, Matrix};
+use indicatif::ProgressBar;
+use std::io::IsTerminal;
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Exit code when a mutant survives or a case kills nothing.
+const LACKING: u8 = 1;
+
+/// Arguments of `fsct gauntlet`.
+#[derive(clap::Args, Debug)]
+pub struct Args {
+    /// Only mutants of this role: device or master
+    #[arg(long)]
+    role: Option<Side>,
+    /// Print the matrix as JSON
+    #[arg(long)]
+    json: bool,
+    /// Folder for gauntlet.json and gauntlet.html
+    #[arg(long, value_name = "DIR", default_value = "fsct-out")]
+    out: PathBuf,
+    #[command(flatten)]
+    cases: Cases,
+}
+
+#[derive(Copy, Clone, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Side {
+    Device,
+    Master,
+}
+
+/// Runs the command; the result is the exit code.
+pub fn run(args: &Args) -> u8 {
+    execute(args).unwrap_or_else(|code| code)
+}
+
+fn execute(args: &Args) -> Result<u8, u8> {
+    let library = args.cases.load()?;
+    let begin = Instant::now();
+    let bar = if std::io::stderr().is_terminal() { ProgressBar::new_spinner() } else { ProgressBar::hidden() };
+    let mut roles = Vec::new();
+    for (side, role) in [(Side::Device, Role::Device), (Side::Master, Role::Master)] {
+        if args.role.is_none_or(|wanted| wanted == side) {
+            roles.push(matrix(&library, role, &|| bar.inc(1)).map_err(|problem| show(&[problem]))?);
+        }
+    }
+    bar.finish_and_clear();
+    let gauntlet = Gauntlet { roles, seconds: begin.elapsed().as_secs_f64() };
+    gauntlet
+        .write(&args.out)
+        .map_err(|error| fail(RIG, format!("the matrix in {} cannot be written: {error}", args.out.display())))?;
+    if args.json {
+        print(gauntlet.json().trim_end());
+    } else {
+        gauntlet.roles.iter().for_each(tell);
+        print(format!("{:.1} s · matrix: {}", gauntlet.seconds, args.out.join("gauntlet.html").display()));
+    }
+    Ok(if gauntlet.is_clean() { 0 } else { LACKING })
+}
+
+fn tell(matrix: &Matrix) {
+    let (mutants, cases) = (matrix.mutants.len(), matrix.cases.len());
+    let (survivors, idle) = (matrix.survivors().count(), matrix.idle().count());
+    print(format!(
+        "{}: {} of {mutants} mutants killed by a case that judges their clause, {} of {cases} cases kill",
+        matrix.role,
+        mutants - survivors,
+        cases - idle
+    ));
+    for mutant in matrix.survivors() {
+        let how = match (mutant.killed_by.keys().next(), mutant.oracle) {
+            (Some(id), _) => format!("killed by {id}, which does not judge {}", mutant.clause),
+            (None, Some(true)) => "found by the oracle alone".to_owned(),
+            (None, _) => "found by nothing".to_owned(),
+        };
+        print(format!("  survives: {} ({}): {how}", mutant.name, mutant.clause));
+    }
+    for case in matrix.idle() {
+        print(format!("  kills nothing: {} {}", case.id, case.title));
+    }
+}
