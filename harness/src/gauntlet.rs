@@ -120,11 +120,12 @@ pub fn matrix(library: &Library, role: Role, done: &(dyn Fn() + Sync)) -> Result
 /// A case that failed kills when an expectation in one of its own steps did; where things start and whether they go on
 /// afterwards is no business of a single case.
 fn kill(row: &mut Row, case: &CaseRecord) {
-    // Step 0 is the start condition, the last one the liveness check.
+    // Step 0 is the start condition; the liveness check is the last one, but only of a case that got that far.
     let own = |reason: &&Reason| {
+        let step = case.steps.get(reason.step).filter(|_| reason.step > 0);
         reason.verdict == Verdict::Fail
             && reason.kind.starts_with("expect/")
-            && (1..case.steps.len().saturating_sub(1)).contains(&reason.step)
+            && step.is_some_and(|step| !step.text.starts_with("liveness:"))
     };
     let Some(reason) = case.reasons.iter().find(own) else { return };
     *row.killed_by.entry(case.id.clone()).or_default() += 1;

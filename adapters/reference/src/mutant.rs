@@ -80,7 +80,7 @@ catalogue! {
             "ChFAckReq_DC stays set until power-off."
         AckReqInOperationOnly "ack-req-in-operation-only", "11.5.3 Table 40":
             "In state 27 ChFAckReq is not looked at."
-        AckReqAsSetSd "ack-req-as-set-sd", "11.11.2":
+        AckReqAsSetSd "ack-req-as-set-sd", "11.5.3 Table 40 T22, 11.11.2":
             "A received ChFAckReq has the effect of setSD as well."
         SetSdKeepsPdout "set-sd-keeps-pdout", "11.5.3 Table 40 T22":
             "A received setSD sets setSD_DC, but process data go on to the technology."
@@ -246,15 +246,15 @@ catalogue! {
             "DTimer expires one millisecond early."
         WatchdogLate "watchdog-late", "11.5.5":
             "DTimer expires three milliseconds late."
-        WatchdogOctetsSwapped "watchdog-octets-swapped", "A.2.6":
+        WatchdogOctetsSwapped "watchdog-octets-swapped", "11.5.5, A.2.6":
             "FSP_Watchdog is read least significant octet first."
-        WatchdogOfFactory "watchdog-of-factory", "11.7.6":
+        WatchdogOfFactory "watchdog-of-factory", "11.5.5, 11.7.6":
             "DTimer runs with the default of FSP_Watchdog, whatever the record says."
 
         // Power, FSP parameters, verify record
         PdoutAtPowerOn "pdout-at-power-on", "11.5.3 Table 40":
             "At power-on PDout_D is what it was at power-off."
-        StartsAtPowerOn "starts-at-power-on", "A.2.10":
+        StartsAtPowerOn "starts-at-power-on", "11.5.3 Table 40 T20, A.2.10":
             "The SCL starts at power-on, without FSP_VerifyRecord."
         StartsOnProtocol "starts-on-protocol", "A.2.10":
             "The SCL starts once the protocol block was written."
@@ -280,11 +280,11 @@ catalogue! {
             "FSP_ProtMode of the record is not compared."
         WatchdogUnverified "watchdog-unverified", "A.2.6":
             "FSP_Watchdog of the record is used without a check."
-        IoStructCrcUnverified "io-struct-crc-unverified", "A.2.7":
+        IoStructCrcUnverified "io-struct-crc-unverified", "A.2.10, A.2.7":
             "FSP_IO_StructCRC of the record is not compared."
-        TechParCrcUnverified "tech-par-crc-unverified", "A.2.8":
+        TechParCrcUnverified "tech-par-crc-unverified", "A.2.10, A.2.8":
             "FSP_TechParCRC of the record is not compared."
-        CrcEventsSwapped "crc-events-swapped", "B.1 Table B.1":
+        CrcEventsSwapped "crc-events-swapped", "A.2.3, B.1 Table B.1":
             "The EventCodes for a wrong FSP_AuthentCRC and FSP_ProtParCRC are in each other's place."
         RecordReadable "record-readable", "A.1 Table A.1":
             "FSP_VerifyRecord can be read."
