@@ -1,7 +1,7 @@
 //! FSP parameterization of an FS-Device as a case asks for it: the records of the profile, and how the verify record
 //! deviates from them.
 
-use crate::case::model::{RecordField, Parameterize, Value};
+use crate::case::model::{Parameterize, RecordField, Value};
 use crate::profile::Profile;
 use fsct_protocol::ProtMode;
 use fsct_protocol::crc::crc16;
@@ -11,12 +11,7 @@ use fsct_protocol::fsp::{INDEX_VERIFY, VerifyRecord};
 const SIGNATURES: [&str; 2] = ["FSP_AuthentCRC", "FSP_ProtParCRC"];
 
 /// The records to be written, in order.
-pub fn records(
-    profile: &Profile,
-    asked: &Parameterize,
-    mode: ProtMode,
-    io_struct_crc: u16,
-) -> Vec<(u16, Vec<u8>)> {
+pub fn records(profile: &Profile, asked: &Parameterize, mode: ProtMode, io_struct_crc: u16) -> Vec<(u16, Vec<u8>)> {
     let tech_par_crc = if asked.armed { profile.armed_tech_par_crc() } else { profile.tech_par_crc };
     let mut records = profile.records(mode, io_struct_crc, tech_par_crc);
     records.retain(|(index, _)| if *index == INDEX_VERIFY { asked.record } else { asked.blocks });
@@ -27,7 +22,8 @@ pub fn records(
 }
 
 fn deviate(record: &mut [u8], set: &[(&'static RecordField, Value)]) {
-    let (signatures, values): (Vec<_>, Vec<_>) = set.iter().copied().partition(|(field, _)| SIGNATURES.contains(&field.name));
+    let (signatures, values): (Vec<_>, Vec<_>) =
+        set.iter().copied().partition(|(field, _)| SIGNATURES.contains(&field.name));
     values.into_iter().for_each(|(field, value)| put(record, field, value));
     for (covered, signature) in [(0..9, 9..11), (11..21, 21..VerifyRecord::OCTETS)] {
         let computed = record.get(covered).map(|octets| crc16(0, octets).to_be_bytes());

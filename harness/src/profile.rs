@@ -198,13 +198,8 @@ impl Profile {
     /// The FSP records that start a product in this mode, in the order they are written; FSP_IO_StructCRC is the maker's.
     pub fn records(&self, mode: ProtMode, io_struct_crc: u16, tech_par_crc: u32) -> Vec<(u16, Vec<u8>)> {
         let authenticity = self.authenticity();
-        let protocol = Protocol {
-            version: 1,
-            mode: mode.code(),
-            watchdog_ms: self.watchdog_ms,
-            io_struct_crc,
-            tech_par_crc,
-        };
+        let protocol =
+            Protocol { version: 1, mode: mode.code(), watchdog_ms: self.watchdog_ms, io_struct_crc, tech_par_crc };
         let verify = (INDEX_VERIFY, VerifyRecord { authenticity, protocol }.to_octets().to_vec());
         match self.parameterization {
             Parameterization::Commissioning => vec![

@@ -129,7 +129,7 @@ impl FsDevice {
             (Some(Mutant::SclSurvivesPowerOff), Some(before)) => session.kept = before.scl.or(before.kept),
             (Some(Mutant::StartsAtPowerOn), _) => {
                 let stored = self.parameters.stored().unwrap_or(Verified { port: Port::ONE, watchdog_ms: 1_000 });
-                session.scl = Some(start(self.variant, stored, self.options.mutant, self.now, &session.inputs));
+                session.scl = Some(start(self.variant, stored, self.options.mutant, self.now));
             }
             _ => {}
         }
@@ -174,7 +174,7 @@ impl FsDevice {
             Err(error) => return seen.push(Seen::Refused { error }),
         };
         seen.push(Seen::Written);
-        let start = |verified| start(self.variant, verified, self.options.mutant, self.now, &session.inputs);
+        let start = |verified| start(self.variant, verified, self.options.mutant, self.now);
         let (scl, record_received) = match written {
             Written::Nothing => return,
             Written::Block if self.options.mutant == Some(Mutant::StartsOnProtocol) => {
@@ -337,7 +337,7 @@ impl Sink<'_> {
 }
 
 /// FSP parameterization of the SCL. This device is ready as soon as its parameters are: T20 follows at once.
-fn start(variant: Variant, verified: Verified, mutant: Option<Mutant>, now: u64, inputs: &Inputs) -> Scl {
+fn start(variant: Variant, verified: Verified, mutant: Option<Mutant>, now: u64) -> Scl {
     let mut scl = Scl::new(Config {
         mode: variant.mode,
         pd_out: variant.pd_out,
@@ -345,7 +345,7 @@ fn start(variant: Variant, verified: Verified, mutant: Option<Mutant>, now: u64,
         watchdog_ms: verified.watchdog_ms,
         mutant,
     });
-    scl.system_start_ok(now, inputs);
+    scl.system_start_ok(now);
     scl
 }
 

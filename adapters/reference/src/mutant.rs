@@ -6,7 +6,7 @@ use crate::catalogue::catalogue;
 catalogue! {
     /// One deliberate fault of the reference FS-Device.
     pub enum Mutant {
-        WrongSeed "wrong-seed", "D.3.6":
+        WrongSeed "wrong-seed", "11.4.7, D.3.6":
             "SPDU signatures are computed and checked with the start value 0 instead of 1."
         ZeroNotReplaced "zero-not-replaced", "11.4.7":
             "A computed signature of 0 is sent and expected as 0 instead of 1."
@@ -50,7 +50,7 @@ catalogue! {
             "FS-PDin is sent last octet first."
         PdinLate "pdin-late", "11.5.3 Table 40 T22":
             "An answer carries the PDin_D that stood when the answer before it was made."
-        PortUnchecked "port-unchecked", "11.4.5, 11.5.3 Table 40 T25":
+        PortUnchecked "port-unchecked", "11.5.3 Table 40 T25, 11.4.5":
             "PortNum of a received SPDU is not compared."
         PortInvertedTaken "port-inverted-taken", "11.5.6.10":
             "The inverse of FSP_Port is taken as well."
@@ -72,7 +72,7 @@ catalogue! {
             "The three bits of DCount_i are sent in reversed order."
 
         // Control&MCnt
-        ControlBitsSwapped "control-bits-swapped", "11.4.6 Table 31":
+        ControlBitsSwapped "control-bits-swapped", "11.5.3 Table 40 T22, 11.4.6 Table 31":
             "setSD and ChFAckReq are read in each other's place."
         AckReqIgnored "ack-req-ignored", "11.3.3 Table 29":
             "ChFAckReq_DC is never set."
@@ -134,8 +134,6 @@ catalogue! {
             "TimeoutCount is 1 at the start."
         DTimerRunsFromT20 "d-timer-runs-from-t20", "11.5.3 Table 40 T20":
             "DTimer runs already while the first SPDU is awaited."
-        AnswerBeforeFirst "answer-before-first", "11.5.3 Table 40 T20":
-            "An SPDU with DCount_i 7 is sent before the first SPDU has come."
         DTimeoutInFirstAnswers "d-timeout-in-first-answers", "11.5.3 Table 40 T22":
             "DTimeout of the start stays until SDcycles has run down."
 
@@ -245,7 +243,7 @@ catalogue! {
         WatchdogEarly "watchdog-early", "11.5.5":
             "DTimer expires one millisecond early."
         WatchdogLate "watchdog-late", "11.5.5":
-            "DTimer expires three milliseconds late."
+            "DTimer expires five milliseconds late."
         WatchdogOctetsSwapped "watchdog-octets-swapped", "11.5.5, A.2.6":
             "FSP_Watchdog is read least significant octet first."
         WatchdogOfFactory "watchdog-of-factory", "11.5.5, 11.7.6":
@@ -290,8 +288,10 @@ catalogue! {
             "FSP_VerifyRecord can be read."
         RecordBySubindex "record-by-subindex", "A.2.10":
             "A write to a Subindex of FSP_VerifyRecord is taken."
-        ParamDescCrcShort "param-desc-crc-short", "A.1 Table A.1, iec2022":
-            "FSP_ParamDescCRC has two octets in iec2022 too."
+        ParamDescCrcOfOtherEdition "param-desc-crc-of-other-edition", "A.1 Table A.1":
+            "FSP_ParamDescCRC has the length of the other edition."
+        ProtocolReadShort "protocol-read-short", "A.1 Table A.1":
+            "The protocol block is read without its signature."
         TimeToReadyWritable "time-to-ready-writable", "A.1 Table A.1, iec2022":
             "FSP_TimeToReady can be written."
         AuthenticityReadReversed "authenticity-read-reversed", "A.1 Table A.1":

@@ -145,6 +145,9 @@ impl Parameters {
                 item(&reversed.to_octets(), &AUTHENTICITY_ITEMS, subindex)
             }
             INDEX_AUTHENTICITY => item(&self.authenticity.to_octets(), &AUTHENTICITY_ITEMS, subindex),
+            INDEX_PROTOCOL if self.is(Mutant::ProtocolReadShort) => {
+                item(&self.protocol.to_octets()[..10], &PROTOCOL_ITEMS, subindex)
+            }
             INDEX_PROTOCOL => item(&self.protocol.to_octets(), &PROTOCOL_ITEMS, subindex),
             INDEX_VERIFY if self.is(Mutant::RecordReadable) => {
                 Ok([&self.authenticity.to_octets()[..], &self.protocol.to_octets()[..]].concat())
@@ -152,10 +155,10 @@ impl Parameters {
             INDEX_VERIFY => Err(error_type::ACCESS_DENIED),
             index::PARAM_DESC_CRC => {
                 let described = param_desc(self.variant.mode.code(), WATCHDOG_RANGE_MS, io_struct_crc(self.variant));
-                match edition {
-                    _ if self.is(Mutant::ParamDescCrcShort) => item(&crc16(0, &described).to_be_bytes(), &[], subindex),
-                    Edition::V1_1 => item(&crc16(0, &described).to_be_bytes(), &[], subindex),
-                    Edition::Iec2022 => item(&crc32(0, &described).to_be_bytes(), &[], subindex),
+                let short = (edition == Edition::V1_1) != self.is(Mutant::ParamDescCrcOfOtherEdition);
+                match short {
+                    true => item(&crc16(0, &described).to_be_bytes(), &[], subindex),
+                    false => item(&crc32(0, &described).to_be_bytes(), &[], subindex),
                 }
             }
             index::TIME_TO_READY | index::MIN_SHUT_DOWN_TIME if edition == Edition::V1_1 => {

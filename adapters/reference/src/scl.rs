@@ -117,13 +117,11 @@ impl Scl {
     }
 
     /// T20: the start of the system is OK.
-    pub fn system_start_ok(&mut self, now: u64, inputs: &Inputs) {
+    pub fn system_start_ok(&mut self, now: u64) {
         if self.state == State::SystemStart20 {
             self.state = State::WaitOnSpdu21;
-            match self.config.mutant {
-                Some(Mutant::DTimerRunsFromT20) => self.start_d_timer(now),
-                Some(Mutant::AnswerBeforeFirst) => self.send_spdu(Status { dcount_i: 7, ..Status::default() }, inputs),
-                _ => {}
+            if self.is(Mutant::DTimerRunsFromT20) {
+                self.start_d_timer(now);
             }
         }
     }
@@ -353,7 +351,8 @@ impl Scl {
             Some(Mutant::AckReqInOperationOnly) if self.state == State::WaitOnSpdu26 => self.outputs.ch_f_ack_req_dc,
             _ => control.ch_f_ack_req,
         };
-        let good = self.counter_good(previous, control.mcount) && self.port_good(spdu) && self.signature_good(octets, spdu);
+        let good =
+            self.counter_good(previous, control.mcount) && self.port_good(spdu) && self.signature_good(octets, spdu);
         if self.is(Mutant::PreviousIsLastGood) {
             self.status.dcount_i = 7 - control.mcount;
             self.m_count = if good { self.m_count } else { previous };
@@ -439,7 +438,7 @@ impl Scl {
         match self.config.mutant {
             Some(Mutant::WatchdogDoubled) => 2 * ns,
             Some(Mutant::WatchdogEarly) => ns.saturating_sub(MS).max(MS),
-            Some(Mutant::WatchdogLate) => ns + 3 * MS,
+            Some(Mutant::WatchdogLate) => ns + 5 * MS,
             _ => ns,
         }
     }

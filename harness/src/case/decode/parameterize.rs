@@ -1,7 +1,7 @@
 //! `parameterize`: the FSP records of the profile, and what is not as it says.
 
 use super::Decoder;
-use crate::case::model::{RecordField, Parameterize};
+use crate::case::model::{Parameterize, RecordField};
 use crate::tree::Fields;
 use crate::yaml::Node;
 
@@ -16,8 +16,10 @@ impl Decoder<'_> {
         let record = fields.optional_word("record", WRITTEN).unwrap_or(true);
         let armed = fields.optional_word("armed", YES).unwrap_or(false);
         let starts = fields.optional_word("starts", YES).unwrap_or(true);
-        let named: Vec<_> =
-            RecordField::ALL.iter().filter_map(|field| fields.optional(field.name).map(|placed| (field, placed))).collect();
+        let named: Vec<_> = RecordField::ALL
+            .iter()
+            .filter_map(|field| fields.optional(field.name).map(|placed| (field, placed)))
+            .collect();
         fields.finish(self.problems);
         let set = named
             .into_iter()
