@@ -6,6 +6,7 @@ use crate::case::model::*;
 use crate::expect::{self, Before};
 use crate::link::Link;
 use crate::oracle::Mask;
+use crate::parameterize;
 use crate::partner::Partner;
 use crate::profile::{Parameterization, Profile};
 use crate::session::{Reply, Session, Stop};
@@ -16,6 +17,8 @@ use fsct_reports::record::{Execution, Reason, StepRecord, Verdict};
 
 /// The bound of the liveness requirement (R-11.5.3-22): 8 SCL cycles plus 2 FSP_Watchdog.
 const LIVENESS_SCL_CYCLES: u64 = 8;
+/// How long an Event to a deviating verify record is waited for.
+const EVENT_NS: u64 = 100_000_000;
 
 /// What came of a case.
 #[derive(Debug)]
@@ -238,7 +241,7 @@ impl<'s, 'd> Engine<'s, 'd> {
             Action::Wait(wait) => self.wait(wait)?,
             Action::Partner(partner) => return self.partner(partner, before),
             Action::Power(on) => self.power(*on)?,
-            Action::Parameterize => self.parameterize()?,
+            Action::Parameterize(asked) => self.parameterize(asked)?,
             Action::Write { index, subindex, data } => {
                 self.acyclic(Stimulus::Write { index: *index, subindex: *subindex, data: data.clone() })?;
             }
@@ -467,7 +470,7 @@ impl<'s, 'd> Engine<'s, 'd> {
                 self.power(true)?;
             }
             match self.session.role() {
-                Role::Device => self.parameterize()?,
+                Role::Device => self.parameterize(&Parameterize::default())?,
                 Role::Master => self.bring_up()?,
             }
             if self.outcome.verdict == Verdict::Fail {
@@ -531,7 +534,7 @@ impl<'s, 'd> Engine<'s, 'd> {
         Ok(())
     }
 
-    fn parameterize(&mut self) -> Result<(), Stop> {
+    fn parameterize(&mut self, asked: &Parameterize) -> Result<(), Stop> {
         let profile = self.session.profile;
         let now = self.session.now;
         self.tester_mut().first_copy = now;
@@ -540,14 +543,20 @@ impl<'s, 'd> Engine<'s, 'd> {
             return Ok(());
         }
         let io_struct_crc = self.io_struct_crc()?;
-        let records = profile.records(self.session.setup().mode, io_struct_crc);
-        for (index, data) in records {
-            self.acyclic(Stimulus::Write { index, subindex: 0, data })?;
-            if self.session.reply != Some(Reply::Written) {
+        for (index, data) in parameterize::records(profile, asked, self.session.setup().mode, io_struct_crc) {
+            self.session.acyclic(Stimulus::Write { index, subindex: 0, data })?;
+            let written = self.session.reply == Some(Reply::Written);
+            if index == INDEX_VERIFY && !asked.starts {
+                // Taken with an Event or refused, and a product may take its time to raise it.
+                self.session.pass(EVENT_NS)?;
+            } else if !written {
                 let expected = format!("record 0x{index:04X} written");
                 let observed = self.session.replied();
                 self.reason(Verdict::Inconclusive, "start/parameterization", "A.1 Table A.1", &expected, &observed);
                 return Err(Stop::Unserved(format!("the write of record 0x{index:04X} was not carried out")));
+            } else if index == INDEX_VERIFY {
+                let now = self.session.now;
+                self.session.link_mut().oracle.parameterized(now);
             }
         }
         Ok(())

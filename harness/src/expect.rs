@@ -264,6 +264,11 @@ fn reply(expectation: &Expectation, session: &Session<'_>) -> Judged {
             return ("refused".to_owned(), observed, met);
         }
         Expected::Octets(octets) => hex(octets),
+        Expected::Configured => hex(&session.profile.authenticity().to_octets()),
+        Expected::Count(count) => {
+            let met = matches!(&session.reply, Some(Reply::Value(octets)) if octets.len() == *count);
+            return (format!("{count} octets read"), observed, met);
+        }
         _ => format!("refused 0x{:04X}", number(expectation)),
     };
     let met = expected == observed;

@@ -13,6 +13,7 @@ pub mod ledger;
 pub mod library;
 pub mod link;
 pub mod oracle;
+pub mod parameterize;
 pub mod partner;
 pub mod plan;
 pub mod portconfig;

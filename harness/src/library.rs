@@ -266,6 +266,7 @@ pub fn needs(steps: &[Step]) -> impl Iterator<Item = Pco> + '_ {
     steps.iter().filter_map(|step| match step.action {
         Action::Power(_) => Some(Pco::Power),
         Action::App(_) => Some(Pco::App),
+        Action::Parameterize(ref asked) if !asked.starts || !asked.blocks || asked.armed => Some(Pco::Acyclic),
         Action::Read { .. } | Action::Write { .. } | Action::Smi(_) | Action::Raise { .. } => Some(Pco::Acyclic),
         Action::Drive(_) => Some(Pco::Line),
         _ => None,

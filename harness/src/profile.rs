@@ -43,6 +43,8 @@ pub struct Profile {
     pub authenticity_2: u32,
     /// FSP_TechParCRC; 0 means commissioning.
     pub tech_par_crc: u32,
+    /// FSP_TechParCRC of the technology parameters the product holds, for cases that arm it; 0: not told.
+    pub tech_par_crc_armed: u32,
     /// FSMasterPassword of an FS-Master; 0 for none.
     pub password: u32,
     /// FSResetMasterPW of an FS-Master; 0 for none.
@@ -68,6 +70,9 @@ pub struct Profile {
     /// Tolerances the profile takes away.
     pub strict: Mask,
 }
+
+/// The feature of a profile that tells an FSP_TechParCRC other than 0.
+const ARMED: &str = "armed";
 
 /// Name of the profile a DUT is judged by when none is given.
 pub fn default_profile(role: Role) -> String {
@@ -101,6 +106,7 @@ impl Profile {
         let authenticity_1 = number("FSP_Authenticity_1", 0..=0xFFFF_FFFF, 0x1122_3344) as u32;
         let authenticity_2 = number("FSP_Authenticity_2", 0..=0xFFFF_FFFF, 0) as u32;
         let tech_par_crc = number("FSP_TechParCRC", 0..=0xFFFF_FFFF, 0) as u32;
+        let tech_par_crc_armed = number("FSP_TechParCRC_armed", 0..=0xFFFF_FFFF, 0) as u32;
         let password = number("FSMasterPassword", 0..=0xFFFF_FFFF, 0) as u32;
         let reset_password = number("FSResetMasterPW", 0..=0xFFFF_FFFF, 0) as u32;
         let vendor_id = number("VendorID", 1..=0xFFFF, 0x04D2) as u16;
@@ -111,7 +117,10 @@ impl Profile {
         let reading = fields.optional_word("signature_start", READINGS).unwrap_or_default();
         let parameterization =
             fields.optional_word("parameterization", WAYS).unwrap_or(Parameterization::Commissioning);
-        let features = fields.texts("features").into_iter().map(|placed| placed.0).collect();
+        let mut features: Vec<String> = fields.texts("features").into_iter().map(|placed| placed.0).collect();
+        if tech_par_crc != 0 || tech_par_crc_armed != 0 {
+            features.push(ARMED.to_owned());
+        }
         let mut mask = |key| {
             let mut mask = Mask::NONE;
             for (text, at) in fields.texts(key) {
@@ -144,6 +153,7 @@ impl Profile {
                 authenticity_1,
                 authenticity_2,
                 tech_par_crc,
+                tech_par_crc_armed,
                 password,
                 reset_password,
                 vendor_id,
@@ -171,20 +181,25 @@ impl Profile {
         self.watchdog_margin * self.master_cycle_time_ns
     }
 
-    /// The FSP records that start a product in this mode, in the order they are written; FSP_IO_StructCRC is the maker's.
-    pub fn records(&self, mode: ProtMode, io_struct_crc: u16) -> Vec<(u16, Vec<u8>)> {
-        let authenticity = Authenticity {
+    /// The authenticity record.
+    pub const fn authenticity(&self) -> Authenticity {
+        Authenticity {
             authenticity_1: self.authenticity_1,
             authenticity_2: self.authenticity_2,
             port: self.port.number(),
-        };
-        let protocol = Protocol {
-            version: 1,
-            mode: mode.code(),
-            watchdog_ms: self.watchdog_ms,
-            io_struct_crc,
-            tech_par_crc: self.tech_par_crc,
-        };
+        }
+    }
+
+    /// FSP_TechParCRC in armed operation; 0 when the profile does not tell it.
+    pub const fn armed_tech_par_crc(&self) -> u32 {
+        if self.tech_par_crc == 0 { self.tech_par_crc_armed } else { self.tech_par_crc }
+    }
+
+    /// The FSP records that start a product in this mode, in the order they are written; FSP_IO_StructCRC is the maker's.
+    pub fn records(&self, mode: ProtMode, io_struct_crc: u16, tech_par_crc: u32) -> Vec<(u16, Vec<u8>)> {
+        let authenticity = self.authenticity();
+        let protocol =
+            Protocol { version: 1, mode: mode.code(), watchdog_ms: self.watchdog_ms, io_struct_crc, tech_par_crc };
         let verify = (INDEX_VERIFY, VerifyRecord { authenticity, protocol }.to_octets().to_vec());
         match self.parameterization {
             Parameterization::Commissioning => vec![

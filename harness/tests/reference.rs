@@ -95,7 +95,8 @@ fn each_mutant_fails_and_the_clause_is_named(#[case] mutant: Mutant, #[case] cla
 #[test]
 fn a_failure_tells_what_the_matter_is() {
     let library = library();
-    let told: Vec<String> = Mutant::ALL
+    // The first ten of the catalogue, which have one of each kind.
+    let told: Vec<String> = Mutant::ALL[..10]
         .iter()
         .copied()
         .map(|mutant| {

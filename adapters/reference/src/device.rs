@@ -12,7 +12,7 @@ use fsct_adapters::{
     Clock, ClockKind, Description, Dut, DutError, Observation, Octets, Offer, Pco, Role, Seen, Service, Stimulus,
     Variant,
 };
-use fsct_protocol::spdu::Pd;
+use fsct_protocol::spdu::{Pd, Port};
 use fsct_protocol::{Edition, ProtMode};
 use std::time::Instant;
 
@@ -37,6 +37,8 @@ pub struct FsDevice {
     parameters: Parameters,
     /// `None` while the power is off.
     session: Option<Session>,
+    /// What was before the power was switched off; only a mutant looks at it.
+    before: Option<Session>,
     now: u64,
     /// Where the real clock began; `None` with a virtual clock.
     began: Option<Instant>,
@@ -47,6 +49,8 @@ pub struct FsDevice {
 struct Session {
     /// `None` until FSP_VerifyRecord was found as stored.
     scl: Option<Scl>,
+    /// What a mutant keeps over a power cycle.
+    kept: Option<Scl>,
     /// An FSP_VerifyRecord for the stored blocks was received, as stored or deviating.
     record_received: bool,
     /// Process data have been exchanged.
@@ -63,8 +67,9 @@ impl FsDevice {
         FsDevice {
             options,
             variant: DEFAULT_VARIANT,
-            parameters: Parameters::factory(DEFAULT_VARIANT),
+            parameters: Parameters::factory(DEFAULT_VARIANT, options.mutant),
             session: None,
+            before: None,
             now: 0,
             began: (options.clock == ClockKind::Real).then(Instant::now),
         }
@@ -83,7 +88,7 @@ impl FsDevice {
         match stimulus {
             Stimulus::Configure(variant) => self.configure(*variant, seen),
             Stimulus::Power(true) => self.power_on(seen),
-            Stimulus::Power(false) => self.session = None,
+            Stimulus::Power(false) => self.power_off(),
             Stimulus::Exchange { port: PORT, octets } => self.exchange(octets.as_ref(), seen),
             Stimulus::Exchange { port, .. } => {
                 seen.push(Seen::Unsupported);
@@ -110,17 +115,34 @@ impl FsDevice {
             return seen.push(Seen::Unsupported);
         }
         self.variant = variant;
-        self.parameters = Parameters::factory(variant);
+        self.parameters = Parameters::factory(variant, self.options.mutant);
+        self.before = None;
     }
 
     fn power_on(&mut self, seen: &mut Sink<'_>) {
         if self.session.is_some() {
             return;
         }
-        let session = Session::new(self.variant, self.options);
+        let mut session = Session::new(self.variant, self.options);
+        match (self.options.mutant, self.before.take()) {
+            (Some(Mutant::PdoutAtPowerOn), Some(before)) => session.outputs.pd_out = before.outputs.pd_out,
+            (Some(Mutant::SclSurvivesPowerOff), Some(before)) => session.kept = before.scl.or(before.kept),
+            (Some(Mutant::StartsAtPowerOn), _) => {
+                let stored = self.parameters.stored().unwrap_or(Verified { port: Port::ONE, watchdog_ms: 1_000 });
+                session.scl = Some(start(self.variant, stored, self.options.mutant, self.now));
+            }
+            _ => {}
+        }
         session.report(None, seen);
         seen.push_service(Service::SclFault, Octets::bit(false));
         self.session = Some(session);
+    }
+
+    fn power_off(&mut self) {
+        self.before = self.session.take();
+        if self.options.mutant == Some(Mutant::BlocksLostAtPowerOff) {
+            self.parameters = Parameters::factory(self.variant, self.options.mutant);
+        }
     }
 
     fn exchange(&mut self, received: Option<&Octets>, seen: &mut Sink<'_>) {
@@ -152,17 +174,21 @@ impl FsDevice {
             Err(error) => return seen.push(Seen::Refused { error }),
         };
         seen.push(Seen::Written);
-        match written {
-            Written::Nothing => {}
-            Written::Block => session.verified(None, false),
-            Written::Verified(verified) => {
-                session.verified(Some(start(self.variant, verified, self.options.mutant)), true);
+        let start = |verified| start(self.variant, verified, self.options.mutant, self.now);
+        let (scl, record_received) = match written {
+            Written::Nothing => return,
+            Written::Block if self.options.mutant == Some(Mutant::StartsOnProtocol) => {
+                (self.parameters.stored().map(start), false)
             }
+            Written::Block => (None, false),
+            Written::Verified(verified) => (Some(session.kept.take().unwrap_or_else(|| start(verified))), true),
             Written::Deviating(events) => {
-                session.verified(None, true);
                 events.into_iter().flatten().for_each(|code| seen.push_error(code));
+                let starts = self.options.mutant == Some(Mutant::DeviationStarts);
+                (self.parameters.stored().filter(|_| starts).map(start), true)
             }
-        }
+        };
+        session.verified(scl, record_received);
     }
 
     /// Whether the service was taken.
@@ -206,6 +232,7 @@ impl Session {
     fn new(variant: Variant, options: Options) -> Session {
         Session {
             scl: None,
+            kept: None,
             record_received: false,
             operate: false,
             inputs: Inputs { pd_in: Pd::safe(variant.pd_in.into()), sd_set_ds: false },
@@ -310,7 +337,7 @@ impl Sink<'_> {
 }
 
 /// FSP parameterization of the SCL. This device is ready as soon as its parameters are: T20 follows at once.
-fn start(variant: Variant, verified: Verified, mutant: Option<Mutant>) -> Scl {
+fn start(variant: Variant, verified: Verified, mutant: Option<Mutant>, now: u64) -> Scl {
     let mut scl = Scl::new(Config {
         mode: variant.mode,
         pd_out: variant.pd_out,
@@ -318,7 +345,7 @@ fn start(variant: Variant, verified: Verified, mutant: Option<Mutant>) -> Scl {
         watchdog_ms: verified.watchdog_ms,
         mutant,
     });
-    scl.system_start_ok();
+    scl.system_start_ok(now);
     scl
 }
 

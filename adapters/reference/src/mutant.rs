@@ -6,7 +6,7 @@ use crate::catalogue::catalogue;
 catalogue! {
     /// One deliberate fault of the reference FS-Device.
     pub enum Mutant {
-        WrongSeed "wrong-seed", "D.3.6":
+        WrongSeed "wrong-seed", "11.4.7, D.3.6":
             "SPDU signatures are computed and checked with the start value 0 instead of 1."
         ZeroNotReplaced "zero-not-replaced", "11.4.7":
             "A computed signature of 0 is sent and expected as 0 instead of 1."
@@ -26,5 +26,275 @@ catalogue! {
             "The bit DCommErr is never set in an answer."
         SetSdIgnored "set-sd-ignored", "11.5.3 Table 40 T22":
             "A received setSD neither sets setSD_DC nor keeps process data from the technology."
+
+        // The SPDU: signature, process data, port number
+        ZeroKeptCrc32 "zero-kept-crc32", "11.4.7":
+            "With CRC-32 alone a computed signature of 0 is sent and expected as 0."
+        ZeroReceivedTaken "zero-received-taken", "11.4.7":
+            "A received signature of 0 is taken where 0 is computed."
+        Crc32HalfCompared "crc32-half-compared", "11.4.7":
+            "Of a received CRC-32 the last two octets alone are compared."
+        Crc16OctetsSwapped "crc16-octets-swapped", "11.4.3":
+            "A CRC-16 is sent least significant octet first."
+        ControlBeforePort "control-before-port", "11.4.7, D.3.7":
+            "The counter octet goes into the signature before PortNum."
+        SignatureUncheckedWithoutData "signature-unchecked-without-data", "11.4.7":
+            "Without FS-PDout the signature of an SPDU is not checked."
+        SignatureUncheckedAfterFault "signature-unchecked-after-fault", "11.5.3 Table 40 T29":
+            "In state 27 the signature is not checked."
+        PdoutTailLost "pdout-tail-lost", "11.4.4":
+            "The last octet of PDout_D is 0 when FS-PDout has the greatest length of its mode."
+        PdoutReversed "pdout-reversed", "11.4.3":
+            "PDout_D is handed over last octet first."
+        PdinReversed "pdin-reversed", "11.4.3":
+            "FS-PDin is sent last octet first."
+        PdinLate "pdin-late", "11.5.3 Table 40 T22":
+            "An answer carries the PDin_D that stood when the answer before it was made."
+        PortUnchecked "port-unchecked", "11.5.3 Table 40 T25, 11.4.5":
+            "PortNum of a received SPDU is not compared."
+        PortInvertedTaken "port-inverted-taken", "11.5.6.10":
+            "The inverse of FSP_Port is taken as well."
+        PortUncheckedAfterFault "port-unchecked-after-fault", "11.5.3 Table 40 T29":
+            "In state 27 PortNum is not compared."
+
+        // Status&DCnt
+        ErrorBitsSwapped "error-bits-swapped", "11.4.6 Table 32":
+            "DCommErr and DTimeout are in each other's place."
+        SdSetInBit3 "sd-set-in-bit-3", "11.4.6 Table 32":
+            "SDset is sent in the reserved bit 3 instead of bit 2."
+        ReservedBitsSet "reserved-bits-set", "11.4.6 Table 32":
+            "The reserved bits 4 and 3 are sent as 1."
+        DCountPlain "d-count-plain", "11.4.6 Table 33":
+            "DCount_i is MCount itself instead of its inverse."
+        DCountOffByOne "d-count-off-by-one", "11.4.6 Table 33":
+            "DCount_i is 8 - MCount instead of 7 - MCount."
+        DCountBitsReversed "d-count-bits-reversed", "11.4.6 Table 32":
+            "The three bits of DCount_i are sent in reversed order."
+
+        // Control&MCnt
+        ControlBitsSwapped "control-bits-swapped", "11.5.3 Table 40 T22, 11.4.6 Table 31":
+            "setSD and ChFAckReq are read in each other's place."
+        AckReqIgnored "ack-req-ignored", "11.3.3 Table 29":
+            "ChFAckReq_DC is never set."
+        AckReqLatched "ack-req-latched", "11.3.3 Table 29":
+            "ChFAckReq_DC stays set until power-off."
+        AckReqInOperationOnly "ack-req-in-operation-only", "11.5.3 Table 40":
+            "In state 27 ChFAckReq is not looked at."
+        AckReqAsSetSd "ack-req-as-set-sd", "11.5.3 Table 40 T22, 11.11.2":
+            "A received ChFAckReq has the effect of setSD as well."
+        SetSdKeepsPdout "set-sd-keeps-pdout", "11.5.3 Table 40 T22":
+            "A received setSD sets setSD_DC, but process data go on to the technology."
+        SetSdDcMissing "set-sd-dc-missing", "11.3.3 Table 29":
+            "A received setSD brings SDout without setSD_DC."
+        SetSdLatched "set-sd-latched", "11.5.3 Table 40 T22":
+            "A received setSD is in force until the next fault."
+        SetSdLoadsSdCycles "set-sd-loads-sd-cycles", "11.5.3 Table 40 T22":
+            "A received setSD loads SDcycles."
+
+        // Which SPDUs are taken
+        SkipTaken "skip-taken", "11.5.3 Table 40 T25":
+            "One SPDU may be missing: MCount + 2 is taken as well."
+        ZeroRefused "zero-refused", "11.5.3 Table 40":
+            "MCount 0 is taken in the first SPDU alone."
+        ZeroReloadsSdCycles "zero-reloads-sd-cycles", "11.5.3 Table 40 T22":
+            "MCount 0 in operation loads SDcycles."
+        WrapToZero "wrap-to-zero", "11.4.6":
+            "After MCount 7 only 0 is taken."
+        FirstCounterAny "first-counter-any", "11.5.3 Table 40 T21":
+            "The first SPDU may carry any MCount."
+        FirstCounterOne "first-counter-one", "11.5.3 Table 40 T21, iec2022":
+            "The first SPDU may carry MCount 1."
+        FirstSpduUnchecked "first-spdu-unchecked", "11.5.3 Table 40 T21":
+            "The first SPDU is taken without a check."
+        PreviousIsLastGood "previous-is-last-good", "11.5.3 Table 40":
+            "The counter of an SPDU with CommErr does not become the previous one."
+        OldTakenInOperation "old-taken-in-operation", "11.5.3 Table 40 T24":
+            "An SPDU with the previous counter is checked instead of ignored."
+        OldTakenAfterFault "old-taken-after-fault", "11.5.3 Table 40 T27":
+            "After a fault an SPDU with the previous counter is checked instead of ignored."
+        OldChangesPdout "old-changes-pdout", "11.5.3 Table 40 T24":
+            "An SPDU with the previous counter hands its process data over."
+        OldChangesPdin "old-changes-pdin", "11.5.3 Table 40 T24":
+            "An SPDU with the previous counter is answered anew, with the PDin_D of now."
+        AllZeroFirst "all-zero-first", "11.5.3 Table 40":
+            "An SPDU of all zeros is checked as the first one."
+        AllZeroInOperation "all-zero-in-operation", "11.5.3 Table 40":
+            "An SPDU of all zeros is checked in regular operation."
+        AllZeroAfterFault "all-zero-after-fault", "11.5.3 Table 40":
+            "An SPDU of all zeros is checked after a fault."
+
+        // Start
+        SdCycles4 "sd-cycles-4", "11.5.3 Table 40":
+            "SDcycles is loaded with 4 instead of 3."
+        SdCyclesStartAt0 "sd-cycles-start-at-0", "11.5.3 Table 40":
+            "SDcycles is 0 at the start."
+        CommErrCountStartsAt1 "comm-err-count-starts-at-1", "11.5.3 Table 40":
+            "CommErrCount is 1 at the start."
+        TimeoutCountStartsAt1 "timeout-count-starts-at-1", "11.5.3 Table 40":
+            "TimeoutCount is 1 at the start."
+        DTimerRunsFromT20 "d-timer-runs-from-t20", "11.5.3 Table 40 T20":
+            "DTimer runs already while the first SPDU is awaited."
+        DTimeoutInFirstAnswers "d-timeout-in-first-answers", "11.5.3 Table 40 T22":
+            "DTimeout of the start stays until SDcycles has run down."
+
+        // T22 and T23
+        T22KeepsDTimer "t22-keeps-d-timer", "11.5.3 Table 40 T22":
+            "A good SPDU in regular operation does not restart DTimer."
+        T22KeepsSetSdDc "t22-keeps-set-sd-dc", "11.5.3 Table 40 T22":
+            "While SDcycles runs down at the start setSD_DC is not set."
+        T22KeepsSdSet "t22-keeps-sd-set", "11.5.3 Table 40 T22":
+            "While SDcycles runs down at the start SDset is not set."
+        FirstSpduStartsNoDTimer "first-spdu-starts-no-d-timer", "11.5.3 Table 40 T22":
+            "The first SPDU does not start DTimer, the second does."
+        SdSetDsIgnored "sd-set-ds-ignored", "11.5.3 Table 40 T23":
+            "SDset_DS does not show in SDset."
+        SdSetDsLatched "sd-set-ds-latched", "11.5.3 Table 40 T23":
+            "Once SDset_DS was 1 SDset stays 1 until power-off."
+        SdSetDsReplaces "sd-set-ds-replaces", "11.5.3 Table 40 T23":
+            "SDset of a regular answer is SDset_DS alone."
+        SdSetDsAsFault "sd-set-ds-as-fault", "11.5.3 Table 40 T23":
+            "SDset_DS keeps process data from the technology."
+
+        // T25 and T26
+        T25KeepsPdout "t25-keeps-pdout", "11.5.3 Table 40 T25":
+            "A CommErr leaves the process data of before with the technology."
+        T25KeepsSetSdDc "t25-keeps-set-sd-dc", "11.5.3 Table 40 T25":
+            "A CommErr does not set setSD_DC."
+        T25KeepsSdSet "t25-keeps-sd-set", "11.5.3 Table 40 T25":
+            "A CommErr does not set SDset."
+        T25KeepsDCommErr "t25-keeps-d-comm-err", "11.5.3 Table 40 T25":
+            "A CommErr is reported one answer late."
+        T25KeepsCommErrCount "t25-keeps-comm-err-count", "11.5.3 Table 40 T25":
+            "A CommErr is reported in one answer alone."
+        T25KeepsDCount "t25-keeps-d-count", "11.5.3 Table 40 T25":
+            "The answer to a CommErr carries DCount_i of before."
+        T25KeepsSdCycles "t25-keeps-sd-cycles", "11.5.3 Table 40 T25":
+            "A CommErr does not load SDcycles."
+        T25KeepsDTimer "t25-keeps-d-timer", "11.5.3 Table 40 T25":
+            "A CommErr does not restart DTimer."
+        T25StopsDTimer "t25-stops-d-timer", "11.5.3 Table 40 T25":
+            "A CommErr stops DTimer."
+        T26ReturnsTo24 "t26-returns-to-24", "11.5.3 Table 40 T26":
+            "After the answer to a CommErr the machine is back in regular operation."
+
+        // T28 and T29
+        T28PdoutLive "t28-pdout-live", "11.5.3 Table 40 T28":
+            "The fourth good SPDU after a fault hands its process data over."
+        T28OneEarly "t28-one-early", "11.5.3 Table 40 T28":
+            "After a fault the third good SPDU ends it already."
+        T28IgnoresCommErr "t28-ignores-comm-err", "11.5.3 Table 40 T28":
+            "With SDcycles 0 in state 27 an SPDU with CommErr ends the fault."
+        T28ReturnsTo26 "t28-returns-to-26", "11.5.3 Table 40 T28":
+            "The end of a fault leads back to waiting after a fault."
+        T28KeepsSdSet "t28-keeps-sd-set", "11.5.3 Table 40 T28":
+            "The end of a fault does not clear SDset."
+        T28KeepsDCount "t28-keeps-d-count", "11.5.3 Table 40 T28":
+            "The answer at the end of a fault carries DCount_i of before."
+        T28KeepsDTimer "t28-keeps-d-timer", "11.5.3 Table 40 T28":
+            "The end of a fault does not restart DTimer."
+        T29IgnoresCommErr "t29-ignores-comm-err", "11.5.3 Table 40 T29":
+            "A CommErr while SDcycles runs down is not seen."
+        T29KeepsCommErrCount "t29-keeps-comm-err-count", "11.5.3 Table 40 T29":
+            "DCommErr is reported until the fault has ended."
+        T29KeepsTimeoutCount "t29-keeps-timeout-count", "11.5.3 Table 40 T29":
+            "DTimeout is reported until the fault has ended."
+        T29ClearsSetSdDc "t29-clears-set-sd-dc", "11.5.3 Table 40 T29":
+            "While SDcycles runs down after a fault setSD_DC is cleared."
+        T29KeepsDCommErr "t29-keeps-d-comm-err", "11.5.3 Table 40 T29":
+            "A CommErr while a fault is worked off does not set DCommErr in its own answer."
+        T29KeepsDCount "t29-keeps-d-count", "11.5.3 Table 40 T29":
+            "Answers after a fault carry DCount_i of before."
+        T29KeepsSdCycles "t29-keeps-sd-cycles", "11.5.3 Table 40 T29":
+            "A CommErr while a fault is worked off does not load SDcycles."
+        T29KeepsDTimer "t29-keeps-d-timer", "11.5.3 Table 40 T29":
+            "SPDUs after a fault do not restart DTimer."
+
+        // T30, T31 and DTimer
+        T30Missing "t30-missing", "11.5.3 Table 40 T30":
+            "After a fault an expiry of DTimer is not seen."
+        T30KeepsDTimeout "t30-keeps-d-timeout", "11.5.3 Table 40 T30":
+            "An expiry after a fault does not set DTimeout in the answer that stands."
+        T30KeepsTimeoutCount "t30-keeps-timeout-count", "11.5.3 Table 40 T30":
+            "DTimeout of an expiry after a fault is gone with the next SPDU."
+        T30KeepsSdCycles "t30-keeps-sd-cycles", "11.5.3 Table 40 T30":
+            "An expiry after a fault does not load SDcycles."
+        T31Missing "t31-missing", "11.5.3 Table 40 T31":
+            "In regular operation an expiry of DTimer is not seen."
+        T31KeepsPdout "t31-keeps-pdout", "11.5.3 Table 40 T31":
+            "An expiry leaves the process data of before with the technology."
+        T31KeepsSetSdDc "t31-keeps-set-sd-dc", "11.5.3 Table 40 T31":
+            "An expiry does not set setSD_DC."
+        T31KeepsSdSet "t31-keeps-sd-set", "11.5.3 Table 40 T31":
+            "An expiry does not set SDset."
+        T31KeepsDTimeout "t31-keeps-d-timeout", "11.5.3 Table 40 T31":
+            "An expiry is reported one answer late."
+        T31KeepsTimeoutCount "t31-keeps-timeout-count", "11.5.3 Table 40 T31":
+            "DTimeout of an expiry is gone with the next SPDU."
+        T31KeepsSdCycles "t31-keeps-sd-cycles", "11.5.3 Table 40 T31":
+            "An expiry does not load SDcycles."
+        TimeoutResetsDCount "timeout-resets-d-count", "11.5.3 Table 40 T31":
+            "An expiry sets DCount_i to 7."
+        TimeoutForgetsCounter "timeout-forgets-counter", "11.5.3 Table 40 T31":
+            "After an expiry MCount has to start from 0 again."
+        OldRestartsDTimer "old-restarts-d-timer", "11.5.3 Table 40 T24":
+            "Repetitions of an SPDU restart DTimer."
+        AllZeroRestartsDTimer "all-zero-restarts-d-timer", "11.5.3 Table 40":
+            "An SPDU of all zeros restarts DTimer."
+        WatchdogEarly "watchdog-early", "11.5.5":
+            "DTimer expires one millisecond early."
+        WatchdogLate "watchdog-late", "11.5.5":
+            "DTimer expires five milliseconds late."
+        WatchdogOctetsSwapped "watchdog-octets-swapped", "11.5.5, A.2.6":
+            "FSP_Watchdog is read least significant octet first."
+        WatchdogOfFactory "watchdog-of-factory", "11.5.5, 11.7.6":
+            "DTimer runs with the default of FSP_Watchdog, whatever the record says."
+
+        // Power, FSP parameters, verify record
+        PdoutAtPowerOn "pdout-at-power-on", "11.5.3 Table 40":
+            "At power-on PDout_D is what it was at power-off."
+        StartsAtPowerOn "starts-at-power-on", "11.5.3 Table 40 T20, A.2.10":
+            "The SCL starts at power-on, without FSP_VerifyRecord."
+        StartsOnProtocol "starts-on-protocol", "A.2.10":
+            "The SCL starts once the protocol block was written."
+        SclSurvivesPowerOff "scl-survives-power-off", "11.5.3 Table 40":
+            "After a power cycle the SCL goes on where it was."
+        BlocksLostAtPowerOff "blocks-lost-at-power-off", "11.7.6":
+            "Stored authenticity and protocol block are those of the factory after a power cycle."
+        DeviationStarts "deviation-starts", "11.5.7":
+            "A deviating FSP_VerifyRecord raises its Event, and the SCL starts all the same."
+        Authenticity1Unverified "authenticity-1-unverified", "A.2.1":
+            "FSP_Authenticity_1 of the record is not compared."
+        Authenticity2Unverified "authenticity-2-unverified", "A.2.1":
+            "FSP_Authenticity_2 of the record is not compared."
+        PortUnverified "port-unverified", "A.2.2":
+            "FSP_Port of the record is not compared."
+        AuthentCrcUnverified "authent-crc-unverified", "A.2.3":
+            "FSP_AuthentCRC of the record is not checked."
+        ProtParCrcUnverified "prot-par-crc-unverified", "A.2.9":
+            "FSP_ProtParCRC of the record is not checked."
+        VersionUnverified "version-unverified", "A.2.4":
+            "FSP_ProtVersion of the record is not compared."
+        ModeUnverified "mode-unverified", "A.2.5":
+            "FSP_ProtMode of the record is not compared."
+        WatchdogUnverified "watchdog-unverified", "A.2.6":
+            "FSP_Watchdog of the record is used without a check."
+        IoStructCrcUnverified "io-struct-crc-unverified", "A.2.10, A.2.7":
+            "FSP_IO_StructCRC of the record is not compared."
+        TechParCrcUnverified "tech-par-crc-unverified", "A.2.10, A.2.8":
+            "FSP_TechParCRC of the record is not compared."
+        CrcEventsSwapped "crc-events-swapped", "A.2.3, B.1 Table B.1":
+            "The EventCodes for a wrong FSP_AuthentCRC and FSP_ProtParCRC are in each other's place."
+        RecordReadable "record-readable", "A.1 Table A.1":
+            "FSP_VerifyRecord can be read."
+        RecordBySubindex "record-by-subindex", "A.2.10":
+            "A write to a Subindex of FSP_VerifyRecord is taken."
+        ParamDescCrcOfOtherEdition "param-desc-crc-of-other-edition", "A.1 Table A.1":
+            "FSP_ParamDescCRC has the length of the other edition."
+        ProtocolReadShort "protocol-read-short", "A.1 Table A.1":
+            "The protocol block is read without its signature."
+        TimeToReadyWritable "time-to-ready-writable", "A.1 Table A.1, iec2022":
+            "FSP_TimeToReady can be written."
+        AuthenticityReadReversed "authenticity-read-reversed", "A.1 Table A.1":
+            "FSP_Authenticity_1 is read back least significant octet first."
     }
 }

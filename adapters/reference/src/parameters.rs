@@ -4,6 +4,7 @@
 //! 11.5.7 lets no deviating block start the SCL, and Table E.2 (v1.1: E.3) no default authenticity. This device holds
 //! no technology parameters (FST), so their signature is compared with the stored one alone.
 
+use crate::Mutant;
 use fsct_adapters::Variant;
 use fsct_protocol::Edition;
 use fsct_protocol::crc::{crc16, crc32};
@@ -109,15 +110,17 @@ pub enum Written {
 #[derive(Clone, Debug)]
 pub struct Parameters {
     variant: Variant,
+    mutant: Option<Mutant>,
     authenticity: Authenticity,
     protocol: Protocol,
 }
 
 impl Parameters {
     /// The factory setting (Table G.1) of a device that is this variant.
-    pub fn factory(variant: Variant) -> Parameters {
+    pub fn factory(variant: Variant, mutant: Option<Mutant>) -> Parameters {
         Parameters {
             variant,
+            mutant,
             authenticity: Authenticity { authenticity_1: 0, authenticity_2: 0, port: 0 },
             protocol: Protocol {
                 version: PROT_VERSION,
@@ -136,14 +139,26 @@ impl Parameters {
     pub fn read(&self, index: u16, subindex: u8) -> Result<Vec<u8>, u16> {
         let edition = self.variant.edition;
         match index {
+            INDEX_AUTHENTICITY if self.is(Mutant::AuthenticityReadReversed) => {
+                let authenticity_1 = self.authenticity.authenticity_1.swap_bytes();
+                let reversed = Authenticity { authenticity_1, ..self.authenticity };
+                item(&reversed.to_octets(), &AUTHENTICITY_ITEMS, subindex)
+            }
             INDEX_AUTHENTICITY => item(&self.authenticity.to_octets(), &AUTHENTICITY_ITEMS, subindex),
+            INDEX_PROTOCOL if self.is(Mutant::ProtocolReadShort) => {
+                item(&self.protocol.to_octets()[..10], &PROTOCOL_ITEMS, subindex)
+            }
             INDEX_PROTOCOL => item(&self.protocol.to_octets(), &PROTOCOL_ITEMS, subindex),
+            INDEX_VERIFY if self.is(Mutant::RecordReadable) => {
+                Ok([&self.authenticity.to_octets()[..], &self.protocol.to_octets()[..]].concat())
+            }
             INDEX_VERIFY => Err(error_type::ACCESS_DENIED),
             index::PARAM_DESC_CRC => {
                 let described = param_desc(self.variant.mode.code(), WATCHDOG_RANGE_MS, io_struct_crc(self.variant));
-                match edition {
-                    Edition::V1_1 => item(&crc16(0, &described).to_be_bytes(), &[], subindex),
-                    Edition::Iec2022 => item(&crc32(0, &described).to_be_bytes(), &[], subindex),
+                let short = (edition == Edition::V1_1) != self.is(Mutant::ParamDescCrcOfOtherEdition);
+                match short {
+                    true => item(&crc16(0, &described).to_be_bytes(), &[], subindex),
+                    false => item(&crc32(0, &described).to_be_bytes(), &[], subindex),
                 }
             }
             index::TIME_TO_READY | index::MIN_SHUT_DOWN_TIME if edition == Edition::V1_1 => {
@@ -174,6 +189,7 @@ impl Parameters {
                 before(operate)?;
                 self.write_protocol(data)
             }
+            INDEX_VERIFY if subindex != 0 && self.is(Mutant::RecordBySubindex) => Ok(Written::Nothing),
             INDEX_VERIFY => {
                 whole(subindex)?;
                 of_length(data, VERIFY_OCTETS, VERIFY_OCTETS)?;
@@ -186,6 +202,7 @@ impl Parameters {
                 of_length(data, 1, PASSWORD_OCTETS)?;
                 if data.is_ascii() { Ok(Written::Nothing) } else { Err(error_type::VALUE_OUT_OF_RANGE) }
             }
+            index::TIME_TO_READY if self.is(Mutant::TimeToReadyWritable) => Ok(Written::Nothing),
             _ => {
                 self.read(index, subindex)?;
                 Err(error_type::ACCESS_DENIED)
@@ -228,11 +245,16 @@ impl Parameters {
 
     /// FSP_Port of the record, or the EventCode of the first deviation.
     fn verify_authenticity(&self, octets: &[u8]) -> Result<Port, u16> {
-        let block = Authenticity::from_octets(octets).map_err(|_| event_code::AUTHENT_CRC)?;
+        let crc_code = self.crc_events().0;
+        let block = match Authenticity::from_octets(octets) {
+            Err(_) if self.is(Mutant::AuthentCrcUnverified) => Authenticity::fields(octets).map_err(|_| crc_code)?,
+            read => read.map_err(|_| crc_code)?,
+        };
         let stored = &self.authenticity;
-        let same = (block.authenticity_1, block.authenticity_2) == (stored.authenticity_1, stored.authenticity_2);
-        let port = Port::new(block.port).filter(|port| port.number() == stored.port);
-        match port {
+        let same = (block.authenticity_1 == stored.authenticity_1 || self.is(Mutant::Authenticity1Unverified))
+            && (block.authenticity_2 == stored.authenticity_2 || self.is(Mutant::Authenticity2Unverified));
+        let port_same = block.port == stored.port || self.is(Mutant::PortUnverified);
+        match Port::new(stored.port).filter(|_| port_same) {
             _ if !same || unassigned(&block) => Err(event_code::AUTHENTICITY),
             Some(port) => Ok(port),
             None => Err(event_code::PORT),
@@ -241,17 +263,52 @@ impl Parameters {
 
     /// FSP_Watchdog of the record, or the EventCode of the first deviation.
     fn verify_protocol(&self, octets: &[u8]) -> Result<u16, u16> {
-        let block = Protocol::from_octets(octets).map_err(|_| event_code::PROT_PAR_CRC)?;
+        let crc_code = self.crc_events().1;
+        let block = match Protocol::from_octets(octets) {
+            Err(_) if self.is(Mutant::ProtParCrcUnverified) => Protocol::fields(octets).map_err(|_| crc_code)?,
+            read => read.map_err(|_| crc_code)?,
+        };
+        let watchdog_ms = if self.is(Mutant::WatchdogOfFactory) { DEFAULT_WATCHDOG_MS } else { block.watchdog_ms };
+        let block = self.taken_as_stored(block);
         let checks = [
             (block.watchdog_ms != 0, event_code::WATCHDOG),
             (block.io_struct_crc == io_struct_crc(self.variant), event_code::IO_STRUCT_CRC),
             (block.tech_par_crc == self.protocol.tech_par_crc, event_code::TECH_PAR_CRC),
-            (self.supports(&block) && block == self.protocol, event_code::PROT_PAR_CRC),
+            (self.supports(&block) && block == self.protocol, crc_code),
         ];
         match checks.into_iter().find(|(good, _)| !good) {
-            None => Ok(block.watchdog_ms),
+            None => Ok(watchdog_ms),
             Some((_, code)) => Err(code),
         }
+    }
+
+    /// The block with what a mutant does not compare as it is stored.
+    fn taken_as_stored(&self, block: Protocol) -> Protocol {
+        let stored = self.protocol;
+        match self.mutant {
+            Some(Mutant::VersionUnverified) => Protocol { version: stored.version, ..block },
+            Some(Mutant::ModeUnverified) => Protocol { mode: stored.mode, ..block },
+            Some(Mutant::WatchdogUnverified) => Protocol { watchdog_ms: stored.watchdog_ms, ..block },
+            Some(Mutant::IoStructCrcUnverified) => Protocol { io_struct_crc: stored.io_struct_crc, ..block },
+            Some(Mutant::TechParCrcUnverified) => Protocol { tech_par_crc: stored.tech_par_crc, ..block },
+            _ => block,
+        }
+    }
+
+    /// The EventCodes for a wrong FSP_AuthentCRC and a wrong FSP_ProtParCRC.
+    fn crc_events(&self) -> (u16, u16) {
+        let (authent, prot_par) = (event_code::AUTHENT_CRC, event_code::PROT_PAR_CRC);
+        if self.is(Mutant::CrcEventsSwapped) { (prot_par, authent) } else { (authent, prot_par) }
+    }
+
+    /// The stored blocks as an FSP_VerifyRecord gives them to the SCL; `None` without a port.
+    pub fn stored(&self) -> Option<Verified> {
+        let port = Port::new(self.authenticity.port)?;
+        Some(Verified { port, watchdog_ms: self.protocol.watchdog_ms })
+    }
+
+    fn is(&self, mutant: Mutant) -> bool {
+        self.mutant == Some(mutant)
     }
 }
 

@@ -7,10 +7,14 @@
 //! - A jump of MCount is an error, not an old SPDU. The first SPDU must carry 0, in v1.1 as well.
 //! - DTimer has expired once FSP_Watchdog has passed; an SPDU received at that very instant comes after the expiry.
 
+mod actions;
+mod wire;
+
 use crate::Mutant;
+use actions::Action;
+use actions::Transition::{self, T22, T25, T28, T29, T30, T31};
 use fsct_protocol::ProtMode;
-use fsct_protocol::crc::{Reading, crc16, crc32};
-use fsct_protocol::spdu::{Control, Emitted, Pd, Port, Status, View, Wire};
+use fsct_protocol::spdu::{Emitted, Pd, Port, Status, View};
 
 /// What FSP parameterization gives to the SCL.
 #[derive(Copy, Clone, Debug)]
@@ -83,6 +87,10 @@ pub struct Scl {
     status: Status,
     outputs: Outputs,
     answer: Option<Emitted>,
+    /// PDin_D in the answer.
+    pd_in: Option<Pd>,
+    /// The switch of a mutant that stays on.
+    latched: bool,
 }
 
 impl Scl {
@@ -94,20 +102,27 @@ impl Scl {
             d_timer: None,
             m_count: None,
             sd_cycles: 0,
-            comm_err_count: false,
-            timeout_count: false,
+            comm_err_count: config.mutant == Some(Mutant::CommErrCountStartsAt1),
+            timeout_count: config.mutant == Some(Mutant::TimeoutCountStartsAt1),
             status: Status { d_timeout: true, ..Status::default() },
             outputs: Outputs::initial(config.pd_out),
             answer: None,
+            pd_in: None,
+            latched: false,
         };
-        scl.load_sd_cycles();
+        if !scl.is(Mutant::SdCyclesStartAt0) {
+            scl.load_sd_cycles();
+        }
         scl
     }
 
     /// T20: the start of the system is OK.
-    pub fn system_start_ok(&mut self) {
+    pub fn system_start_ok(&mut self, now: u64) {
         if self.state == State::SystemStart20 {
             self.state = State::WaitOnSpdu21;
+            if self.is(Mutant::DTimerRunsFromT20) {
+                self.start_d_timer(now);
+            }
         }
     }
 
@@ -131,12 +146,26 @@ impl Scl {
     /// Every further expiry up to `now` is T30 with the same services, so they are done in one step, however many.
     pub fn expire(&mut self, now: u64, inputs: &Inputs) -> Option<u64> {
         let due = self.d_timer.filter(|due| *due <= now)?;
-        self.use_sd();
-        self.status.d_timeout = true;
-        self.timeout_count = true;
-        self.load_sd_cycles();
-        self.restart_d_timer(now - (now - due) % self.d_timer_ns());
-        self.mirror_m_count();
+        let transition = if self.state == State::WaitOnSpdu26 { T30 } else { T31 };
+        if self.is(if transition == T30 { Mutant::T30Missing } else { Mutant::T31Missing }) {
+            return None;
+        }
+        self.use_sd(transition);
+        if self.carries_out(transition, Action::DTimeout) {
+            self.status.d_timeout = true;
+        }
+        if self.carries_out(transition, Action::TimeoutCount) {
+            self.timeout_count = true;
+        }
+        if self.carries_out(transition, Action::SdCycles) {
+            self.load_sd_cycles();
+        }
+        self.start_d_timer(now - (now - due) % self.d_timer_ns());
+        match self.config.mutant {
+            Some(Mutant::TimeoutResetsDCount) => self.status.dcount_i = 7,
+            Some(Mutant::TimeoutForgetsCounter) => self.m_count = None,
+            _ => self.mirror_m_count(transition),
+        }
         self.prepare_response_25(inputs);
         Some(due)
     }
@@ -145,7 +174,7 @@ impl Scl {
     /// change nothing; what follows the SPDU is non-safety data.
     pub fn received(&mut self, now: u64, octets: &[u8], inputs: &Inputs) {
         let Ok(spdu) = View::new(octets, self.config.mode, self.config.pd_out.into()) else { return };
-        if spdu.is_all_zero() {
+        if spdu.is_all_zero() && !self.checks_all_zero(now) {
             return;
         }
         let not_old = self.m_count != Some(spdu.counter());
@@ -153,77 +182,156 @@ impl Scl {
             State::WaitOnSpdu21 => self.check_spdu_22(now, octets, &spdu, inputs),
             State::WaitOnSpdu24 if not_old => self.check_spdu_22(now, octets, &spdu, inputs),
             State::WaitOnSpdu26 if not_old => self.check_spdu_27(now, octets, &spdu, inputs),
-            State::SystemStart20 | State::WaitOnSpdu24 | State::WaitOnSpdu26 => {}
+            State::WaitOnSpdu24 | State::WaitOnSpdu26 => self.old(now, octets, &spdu, inputs),
+            State::SystemStart20 => {}
+        }
+    }
+
+    /// An SPDU of all zeros; `true` if it is checked.
+    fn checks_all_zero(&mut self, now: u64) -> bool {
+        match (self.config.mutant, self.state) {
+            (Some(Mutant::AllZeroFirst), State::WaitOnSpdu21)
+            | (Some(Mutant::AllZeroInOperation), State::WaitOnSpdu24)
+            | (Some(Mutant::AllZeroAfterFault), State::WaitOnSpdu26) => return true,
+            (Some(Mutant::AllZeroRestartsDTimer), _) if self.d_timer.is_some() => self.start_d_timer(now),
+            _ => {}
+        }
+        false
+    }
+
+    /// An SPDU with the previous counter: nothing happens.
+    fn old(&mut self, now: u64, octets: &[u8], spdu: &View<'_>, inputs: &Inputs) {
+        match (self.config.mutant, self.state) {
+            (Some(Mutant::OldTakenInOperation), State::WaitOnSpdu24) => self.check_spdu_22(now, octets, spdu, inputs),
+            (Some(Mutant::OldTakenAfterFault), State::WaitOnSpdu26) => self.check_spdu_27(now, octets, spdu, inputs),
+            (Some(Mutant::OldChangesPdout), State::WaitOnSpdu24) => self.outputs.pd_out = self.received_pd(spdu),
+            (Some(Mutant::OldChangesPdin), State::WaitOnSpdu24) => self.prepare_response_23(inputs),
+            (Some(Mutant::OldRestartsDTimer), _) => self.start_d_timer(now),
+            _ => {}
         }
     }
 
     fn check_spdu_22(&mut self, now: u64, octets: &[u8], spdu: &View<'_>, inputs: &Inputs) {
-        let comm_err = self.checked(octets, spdu);
-        self.restart_d_timer(now);
-        self.mirror_m_count();
+        let first = self.state == State::WaitOnSpdu21;
+        let comm_err = self.checked(octets, spdu) && !(first && self.is(Mutant::FirstSpduUnchecked));
         if comm_err {
-            // T25
-            self.use_sd();
-            self.status.d_comm_err = true;
-            self.comm_err_count = true;
-            self.load_sd_cycles();
+            self.restart_d_timer(T25, now);
+            self.mirror_m_count(T25);
+            self.use_sd(T25);
+            self.report_comm_err(T25);
             self.prepare_response_25(inputs);
+            match self.config.mutant {
+                Some(Mutant::T25StopsDTimer) => self.d_timer = None,
+                Some(Mutant::T26ReturnsTo24) => self.state = State::WaitOnSpdu24,
+                _ => {}
+            }
         } else {
-            // T22
+            if !(first && self.is(Mutant::FirstSpduStartsNoDTimer)) {
+                self.restart_d_timer(T22, now);
+            }
+            self.mirror_m_count(T22);
             self.status.d_comm_err = false;
-            self.clear_d_timeout();
+            if !(self.is(Mutant::DTimeoutInFirstAnswers) && self.sd_cycles != 0) {
+                self.clear_d_timeout();
+            }
+            if self.is(Mutant::ZeroReloadsSdCycles) && !first && spdu.counter() == 0 {
+                self.load_sd_cycles();
+            }
             if self.sd_cycles != 0 {
-                self.use_sd();
+                self.use_sd(T22);
                 self.count_sd_cycle(spdu);
             } else {
-                self.outputs.pd_out = received_pd(spdu);
+                self.outputs.pd_out = self.received_pd(spdu);
                 self.outputs.set_sd_dc = false;
                 self.status.sd_set = false;
             }
-            if spdu.control().set_sd && !self.is(Mutant::SetSdIgnored) {
-                self.use_sd_out();
-                self.outputs.set_sd_dc = true;
-            }
+            self.obey_set_sd(self.control(spdu).set_sd);
             self.prepare_response_23(inputs);
+        }
+    }
+
+    /// The received setSD, as T22 looks at it.
+    fn obey_set_sd(&mut self, set_sd: bool) {
+        self.latched |= set_sd && self.is(Mutant::SetSdLatched);
+        if !(set_sd || self.latched) || self.is(Mutant::SetSdIgnored) {
+            return;
+        }
+        if !self.is(Mutant::SetSdKeepsPdout) {
+            self.use_sd_out();
+        }
+        if !self.is(Mutant::SetSdDcMissing) {
+            self.outputs.set_sd_dc = true;
+        }
+        if self.is(Mutant::SetSdLoadsSdCycles) {
+            self.load_sd_cycles();
         }
     }
 
     fn check_spdu_27(&mut self, now: u64, octets: &[u8], spdu: &View<'_>, inputs: &Inputs) {
-        let comm_err = self.checked(octets, spdu);
-        self.restart_d_timer(now);
-        self.mirror_m_count();
-        if comm_err || self.sd_cycles > 0 {
-            // T29
-            self.use_sd();
+        let last = if self.is(Mutant::T28OneEarly) { 1 } else { 0 };
+        let worked_off = self.sd_cycles <= last;
+        let comm_err = self.checked(octets, spdu)
+            && !self.is(if worked_off { Mutant::T28IgnoresCommErr } else { Mutant::T29IgnoresCommErr });
+        if comm_err || !worked_off {
+            self.restart_d_timer(T29, now);
+            self.mirror_m_count(T29);
+            self.use_sd(T29);
             if comm_err {
-                self.status.d_comm_err = true;
-                self.comm_err_count = true;
-                self.load_sd_cycles();
+                self.report_comm_err(T29);
             } else {
                 self.count_sd_cycle(spdu);
-                self.status.d_comm_err = std::mem::take(&mut self.comm_err_count);
-                if std::mem::take(&mut self.timeout_count) {
-                    self.status.d_timeout = true;
-                } else {
-                    self.clear_d_timeout();
-                }
+                self.report_once_more();
+            }
+            if self.is(Mutant::T29ClearsSetSdDc) {
+                self.outputs.set_sd_dc = false;
             }
             self.prepare_response_25(inputs);
         } else {
-            // T28
+            self.restart_d_timer(T28, now);
+            self.mirror_m_count(T28);
             self.use_sd_out();
             self.outputs.set_sd_dc = false;
-            self.status.sd_set = false;
+            if self.carries_out(T28, Action::SdSet) {
+                self.status.sd_set = false;
+            }
             self.status.d_comm_err = false;
             self.clear_d_timeout();
+            self.latched &= !self.is(Mutant::SetSdLatched);
+            if self.is(Mutant::T28PdoutLive) {
+                self.outputs.pd_out = self.received_pd(spdu);
+            }
             self.prepare_response_23(inputs);
+            if self.is(Mutant::T28ReturnsTo26) {
+                self.state = State::WaitOnSpdu26;
+            }
         }
+    }
+
+    /// T29 without an error: DCommErr and DTimeout once more, if they were set.
+    fn report_once_more(&mut self) {
+        self.status.d_comm_err = self.comm_err_count;
+        self.comm_err_count &= self.is(Mutant::T29KeepsCommErrCount);
+        if self.timeout_count {
+            self.status.d_timeout = true;
+        } else {
+            self.clear_d_timeout();
+        }
+        self.timeout_count &= self.is(Mutant::T29KeepsTimeoutCount);
     }
 
     /// T23. SDset_DS acts on the answer being sent.
     fn prepare_response_23(&mut self, inputs: &Inputs) {
-        let status = Status { sd_set: self.status.sd_set || inputs.sd_set_ds, ..self.status };
-        self.send_spdu(status, inputs);
+        self.latched |= inputs.sd_set_ds && self.is(Mutant::SdSetDsLatched);
+        let sd_set_ds = match self.config.mutant {
+            Some(Mutant::SdSetDsIgnored) => false,
+            Some(Mutant::SdSetDsLatched) => self.latched,
+            _ => inputs.sd_set_ds,
+        };
+        if sd_set_ds && self.is(Mutant::SdSetDsAsFault) {
+            self.use_sd_out();
+        }
+        let sd_set = self.status.sd_set && !self.is(Mutant::SdSetDsReplaces);
+        self.send_spdu(Status { sd_set: sd_set || sd_set_ds, ..self.status }, inputs);
         self.state = State::WaitOnSpdu24;
     }
 
@@ -235,71 +343,63 @@ impl Scl {
 
     /// The activities of CheckSPDU; the result is CommErr.
     fn checked(&mut self, octets: &[u8], spdu: &View<'_>) -> bool {
-        let control = Control::from_octet(spdu.octet());
+        let control = self.control(spdu);
         let previous = self.m_count.replace(control.mcount);
-        self.outputs.ch_f_ack_req_dc = control.ch_f_ack_req;
-
-        let counter_good = match previous {
-            _ if self.is(Mutant::CounterCheckMissing) => true,
-            _ if control.mcount == 0 => true,
-            None => false,
-            Some(7) => control.mcount == 1,
-            Some(previous) => control.mcount == previous + 1,
+        self.outputs.ch_f_ack_req_dc = match self.config.mutant {
+            Some(Mutant::AckReqIgnored) => false,
+            Some(Mutant::AckReqLatched) => self.outputs.ch_f_ack_req_dc || control.ch_f_ack_req,
+            Some(Mutant::AckReqInOperationOnly) if self.state == State::WaitOnSpdu26 => self.outputs.ch_f_ack_req_dc,
+            _ => control.ch_f_ack_req,
         };
-        let port_good = spdu.port_num() == self.config.port.number();
-        let secured = octets.get(..spdu.pd().len() + 2).unwrap_or_default();
-        !(counter_good && port_good && self.signature(secured) == spdu.signature())
-    }
-
-    fn send_spdu(&mut self, mut status: Status, inputs: &Inputs) {
-        if self.is(Mutant::DCommErrNeverReported) {
-            status.d_comm_err = false;
+        let good =
+            self.counter_good(previous, control.mcount) && self.port_good(spdu) && self.signature_good(octets, spdu);
+        if self.is(Mutant::PreviousIsLastGood) {
+            self.status.dcount_i = 7 - control.mcount;
+            self.m_count = if good { self.m_count } else { previous };
         }
-        let port = self.config.port;
-        let wire = Wire {
-            pd: inputs.pd_in,
-            port_num: if self.is(Mutant::PortNotInverted) { port.number() } else { port.inverted() },
-            octet: status.to_octet(),
-            signature: Some(0),
-        };
-        let mut spdu = wire.emit(self.config.mode, Reading::Preset);
-        let octets = spdu.octets_mut();
-        let length = self.config.mode.signature_octets();
-        if let Some((secured, sent)) = octets.split_at_mut_checked(octets.len().saturating_sub(length)) {
-            let signature = self.signature(secured).to_be_bytes();
-            sent.copy_from_slice(&signature[signature.len() - length..]);
+        !good
+    }
+
+    fn use_sd(&mut self, transition: Transition) {
+        if self.carries_out(transition, Action::PdOut) {
+            self.use_sd_out();
         }
-        self.answer = Some(spdu);
-    }
-
-    /// The signature over `secured`: start value 1, a result of 0 becomes 1 (11.4.7).
-    fn signature(&self, secured: &[u8]) -> u32 {
-        let wrong_seed = self.is(Mutant::WrongSeed);
-        let computed = match self.config.mode {
-            ProtMode::Crc16 => crc16(if wrong_seed { 0 } else { 1 }, secured).into(),
-            ProtMode::Crc32 => crc32(if wrong_seed { 0 } else { 1 }, secured),
-        };
-        if computed == 0 && !self.is(Mutant::ZeroNotReplaced) { 1 } else { computed }
-    }
-
-    fn use_sd(&mut self) {
-        self.use_sd_out();
-        self.outputs.set_sd_dc = true;
-        self.status.sd_set = true;
+        if self.carries_out(transition, Action::SetSdDc) {
+            self.outputs.set_sd_dc = true;
+        }
+        if self.carries_out(transition, Action::SdSet) {
+            self.status.sd_set = true;
+        }
     }
 
     fn use_sd_out(&mut self) {
         self.outputs.pd_out = Pd::safe(self.config.pd_out.into());
     }
 
+    fn report_comm_err(&mut self, transition: Transition) {
+        if self.carries_out(transition, Action::DCommErr) {
+            self.status.d_comm_err = true;
+        }
+        if self.carries_out(transition, Action::CommErrCount) {
+            self.comm_err_count = true;
+        }
+        if self.carries_out(transition, Action::SdCycles) {
+            self.load_sd_cycles();
+        }
+    }
+
     fn load_sd_cycles(&mut self) {
-        self.sd_cycles = if self.is(Mutant::SdCycles2) { 2 } else { 3 };
+        self.sd_cycles = match self.config.mutant {
+            Some(Mutant::SdCycles2) => 2,
+            Some(Mutant::SdCycles4) => 4,
+            _ => 3,
+        };
     }
 
     fn count_sd_cycle(&mut self, spdu: &View<'_>) {
         self.sd_cycles = self.sd_cycles.saturating_sub(1);
         if self.is(Mutant::PdoutLiveDuringSdCycles) {
-            self.outputs.pd_out = received_pd(spdu);
+            self.outputs.pd_out = self.received_pd(spdu);
         }
     }
 
@@ -311,25 +411,44 @@ impl Scl {
     }
 
     /// DCount_i = MCount_inv, the inverse of the MCount received last.
-    fn mirror_m_count(&mut self) {
-        self.status.dcount_i = 7 - self.m_count.unwrap_or(0).min(7);
+    fn mirror_m_count(&mut self, transition: Transition) {
+        if self.carries_out(transition, Action::DCount) && !self.is(Mutant::PreviousIsLastGood) {
+            self.status.dcount_i = 7 - self.m_count.unwrap_or(0).min(7);
+        }
     }
 
-    fn restart_d_timer(&mut self, now: u64) {
+    fn restart_d_timer(&mut self, transition: Transition, now: u64) {
+        if self.carries_out(transition, Action::DTimer) {
+            self.start_d_timer(now);
+        }
+    }
+
+    fn start_d_timer(&mut self, now: u64) {
         self.d_timer = Some(now.saturating_add(self.d_timer_ns()));
     }
 
     /// FSP_Watchdog in nanoseconds, never 0.
     fn d_timer_ns(&self) -> u64 {
-        let factor = if self.is(Mutant::WatchdogDoubled) { 2 } else { 1 };
-        factor * u64::from(self.config.watchdog_ms.max(1)) * 1_000_000
+        const MS: u64 = 1_000_000;
+        let ms = match self.config.mutant {
+            Some(Mutant::WatchdogOctetsSwapped) => self.config.watchdog_ms.swap_bytes(),
+            _ => self.config.watchdog_ms,
+        };
+        let ns = u64::from(ms.max(1)) * MS;
+        match self.config.mutant {
+            Some(Mutant::WatchdogDoubled) => 2 * ns,
+            Some(Mutant::WatchdogEarly) => ns.saturating_sub(MS).max(MS),
+            Some(Mutant::WatchdogLate) => ns + 5 * MS,
+            _ => ns,
+        }
+    }
+
+    /// Whether the transition does this; only a mutant leaves an action out.
+    fn carries_out(&self, transition: Transition, action: Action) -> bool {
+        self.config.mutant.and_then(actions::left_out) != Some((transition, action))
     }
 
     fn is(&self, mutant: Mutant) -> bool {
         self.config.mutant == Some(mutant)
     }
-}
-
-fn received_pd(spdu: &View<'_>) -> Pd {
-    Pd::new(spdu.pd()).unwrap_or(Pd::safe(spdu.pd().len()))
 }

@@ -18,7 +18,7 @@ fn t20_ends_system_start() {
 
     scl.received(0, first.as_slice(), &inputs);
     assert_eq!((scl.state(), scl.answer()), (State::SystemStart20, None));
-    scl.system_start_ok();
+    scl.system_start_ok(0);
     assert_eq!(scl.state(), State::WaitOnSpdu21);
     scl.received(0, first.as_slice(), &inputs);
     assert_eq!((scl.state(), scl.answer().is_some()), (State::WaitOnSpdu24, true));

@@ -9,6 +9,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 mod expect;
+mod parameterize;
 mod port;
 mod spdu;
 
@@ -97,10 +98,7 @@ impl Decoder<'_> {
             "wait" => self.wait(node),
             "partner" => Some(self.partner(node)),
             "power" => self.word(node, &[(Action::Power(true), "on"), (Action::Power(false), "off")], "power"),
-            "parameterize" => {
-                Fields::new(self.source, node, "`parameterize`", self.problems).finish(self.problems);
-                Some(Action::Parameterize)
-            }
+            "parameterize" => Some(Action::Parameterize(self.parameterize(node))),
             "write" | "read" => self.acyclic(word, node),
             "app" => Some(self.app(node)),
             "configure" => Some(self.configure(node)),

@@ -33,6 +33,14 @@ impl Folder {
         text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()
     }
 
+    /// How many cases were planned: a thousand at least, when nothing narrowed the run.
+    pub fn planned(&self) -> usize {
+        let planned = self.lines().first().and_then(|line| line["header"]["planned"].as_u64());
+        let planned = usize::try_from(planned.expect("there is a header")).expect("it fits");
+        assert!(planned > 1_000, "only {planned} cases were planned");
+        planned
+    }
+
     /// How many cases there are of each execution and verdict: "ok pass".
     pub fn counts(&self) -> BTreeMap<String, usize> {
         let mut counts = BTreeMap::new();

@@ -59,7 +59,7 @@ impl Decoder<'_> {
         Action::Configure(configure)
     }
 
-    fn value(&mut self, text: &str, at: &std::ops::Range<usize>) -> Option<Value> {
+    pub(super) fn value(&mut self, text: &str, at: &std::ops::Range<usize>) -> Option<Value> {
         let value = match text {
             "wrong" => Some(Value::Wrong),
             "profile" => Some(Value::Profile),
