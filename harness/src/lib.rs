@@ -5,6 +5,7 @@
 pub mod campaign;
 pub mod case;
 pub mod cli;
+pub mod coverage;
 pub mod engine;
 pub mod expect;
 pub mod keeper;
@@ -21,4 +22,5 @@ pub mod session;
 pub mod tester;
 pub mod trace;
 pub mod tree;
+pub mod walk;
 pub mod yaml;

@@ -3,6 +3,7 @@
 mod case_html;
 mod chart;
 mod compare;
+mod coverage;
 pub mod decode;
 mod duts;
 mod html;
@@ -15,6 +16,7 @@ mod summary;
 mod text;
 
 pub use compare::Differing;
+pub use coverage::{Coverage, Reached};
 pub use journal::{FILE, Journal, ReadError, Reader, Run, read};
 pub use story::{headline, story};
 pub use summary::{Summary, execution_name, verdict_name};

@@ -2,6 +2,7 @@
 
 use super::{Cases, RIG, USAGE, bench, colour, fail, print, show};
 use crate::campaign::{Bench, Run, dut_info};
+use crate::coverage::Coverage;
 use crate::library::Library;
 use crate::oracle::{Mask, Tolerances};
 use crate::plan::{Plan, Selection, plan, unreached};
@@ -165,6 +166,12 @@ fn execute(args: &Args) -> Result<u8, u8> {
         planned: plans.iter().map(|plan| plan.cases.len()).sum(),
         not_applicable: plans.iter().flat_map(|plan| plan.not_applicable.clone()).collect(),
         tolerances: self::in_force(in_force, &library.tolerances),
+        machines: library
+            .coverage
+            .values()
+            .filter(|goals| candidates.iter().any(|one| one.profile.role == goals.role))
+            .map(Coverage::info)
+            .collect(),
     };
     let interrupted = Arc::new(AtomicBool::new(false));
     for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
