@@ -20,6 +20,7 @@ pub mod problem;
 pub mod profile;
 pub mod session;
 pub mod tester;
+pub mod tours;
 pub mod trace;
 pub mod tree;
 pub mod walk;
