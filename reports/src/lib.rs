@@ -4,6 +4,7 @@ mod case_html;
 mod chart;
 mod compare;
 mod coverage;
+mod coverage_html;
 pub mod decode;
 mod duts;
 mod html;

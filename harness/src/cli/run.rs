@@ -392,6 +392,33 @@ fn compare(plans: &[Plan<'_>], taken: &[(&str, Duration)], summary: &Summary) {
     }
 }
 
+/// What was taken in a row, in a few words.
+fn walked(summary: &Summary) -> String {
+    let told = summary.coverage.iter().filter(|_| summary.cases > 0);
+    let said: Vec<String> = told
+        .map(|one| {
+            let (triples, steps) = (one.triples.said(), one.step_pairs.said());
+            format!(" · {}: {triples} triples, {steps} step pairs", one.role)
+        })
+        .collect();
+    said.concat()
+}
+
+/// What can be taken in a row and was not, as long as that is a short list; and what cannot be and was.
+fn in_a_row(summary: &Summary) {
+    for one in summary.coverage.iter().filter(|_| summary.cases > 0) {
+        for (kind, reached) in one.kinds() {
+            if (1..=TOLD).contains(&reached.missing.len()) {
+                print(format!("{kind} not taken by the {}: {}", one.role, reached.missing.join(", ")));
+            }
+            for (name, said) in &reached.contradicting {
+                let name = visible(name);
+                print(format!("CONTRADICTION: the {} took `{name}` of the {kind}, {}", one.role, visible(said)));
+            }
+        }
+    }
+}
+
 fn conclude(args: &Args, plans: &[Plan<'_>], summary: &Summary, interrupted: bool) {
     let coloured = colour(std::io::stdout().is_terminal());
     let mut suites: BTreeMap<&str, usize> = BTreeMap::new();
@@ -411,6 +438,7 @@ fn conclude(args: &Args, plans: &[Plan<'_>], summary: &Summary, interrupted: boo
         (_, []) => " · every transition taken".to_owned(),
         (_, names) => format!(" · not taken: {}", names.join(" ")),
     };
+    let coverage = coverage + &walked(summary);
     let verdict = match summary.exit_code() {
         0 => "conformant",
         1 => "not conformant",
@@ -425,6 +453,7 @@ fn conclude(args: &Args, plans: &[Plan<'_>], summary: &Summary, interrupted: boo
         counts.concat(),
         summary.seed
     ));
+    in_a_row(summary);
     let not_applicable: usize = plans.iter().map(|plan| plan.not_applicable.len()).sum();
     if not_applicable > 0 {
         print(format!("{not_applicable} not applicable, with the reason in the report"));
