@@ -103,6 +103,7 @@ mod tests {
             reasons: Vec::new(),
             tolerances: [("A19".to_owned(), "another \u{1b}reading".to_owned())].into(),
             transitions: [].into(),
+            walked: Default::default(),
             start: "operate".to_owned(),
             steps: Vec::new(),
             trace: Vec::new(),

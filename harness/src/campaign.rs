@@ -14,7 +14,7 @@ use fsct_adapters::{
 use fsct_protocol::crc::Reading;
 use fsct_protocol::spdu::Port;
 use fsct_reports::record::{
-    CaseRecord, DutInfo, Execution, LatencyInfo, Reason, RequirementRef, StepRecord, VariantInfo, Verdict,
+    CaseRecord, DutInfo, Execution, LatencyInfo, Reason, RequirementRef, StepRecord, VariantInfo, Verdict, Walked,
 };
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::SeedableRng;
@@ -307,6 +307,9 @@ impl Run<'_> {
         record.reasons = outcome.reasons;
         record.tolerances = tolerances;
         record.transitions = taken;
+        if let Some(coverage) = self.library.coverage.get(&planned.case.role.to_string()) {
+            record.walked = coverage.names(session.walked());
+        }
         record.steps = outcome.steps;
         record.elided = told.elided;
         record.trace = told.entries;
@@ -371,6 +374,7 @@ impl Run<'_> {
             reasons: Vec::new(),
             tolerances: BTreeMap::new(),
             transitions: BTreeMap::new(),
+            walked: Walked::default(),
             start: case.start.clone(),
             steps: Vec::new(),
             trace: Vec::new(),

@@ -5,6 +5,7 @@
 pub mod campaign;
 pub mod case;
 pub mod cli;
+pub mod coverage;
 pub mod engine;
 pub mod expect;
 pub mod gauntlet;
@@ -21,6 +22,8 @@ pub mod problem;
 pub mod profile;
 pub mod session;
 pub mod tester;
+pub mod tours;
 pub mod trace;
 pub mod tree;
+pub mod walk;
 pub mod yaml;

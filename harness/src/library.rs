@@ -1,6 +1,7 @@
 //! Everything under `testcases/`: carried in the binary, or read from a folder.
 
 use crate::case::{self, Case, Covered, Start, Suite, model::Action, model::Step};
+use crate::coverage::Coverage;
 use crate::ledger::{Class, Ledger};
 use crate::oracle::Tolerances;
 use crate::problem::{Problem, Source, suggestion};
@@ -32,6 +33,8 @@ pub struct Library {
     pub tolerances: Tolerances,
     /// Profiles by name.
     pub profiles: BTreeMap<String, Profile>,
+    /// What a DUT can be led through, by its role.
+    pub coverage: BTreeMap<String, Coverage>,
 }
 
 impl Library {
@@ -97,6 +100,7 @@ impl Library {
         let mut ledger = Ledger::default();
         let mut tolerances = None;
         let mut profiles = BTreeMap::new();
+        let mut coverage = BTreeMap::new();
         for source in &sources {
             let parts: Vec<&str> = source.name.split(['/', '\\']).collect();
             let (folder, file) = match parts.as_slice() {
@@ -109,18 +113,24 @@ impl Library {
                 ("profiles", _) => gather(Profile::parse(source), &mut problems, |profile| {
                     profiles.insert(profile.name.clone(), profile);
                 }),
+                ("coverage", _) => gather(Coverage::parse(source), &mut problems, |goals| {
+                    coverage.insert(goals.role.to_string(), goals);
+                }),
                 (_, "starts.yaml") => gather(case::starts(source), &mut problems, |found| starts = found),
                 (_, "tolerances.yaml") => {
                     gather(Tolerances::parse(source), &mut problems, |found| tolerances = Some(found));
                 }
-                _ => problems.push(
-                    Problem::without_place(&source.name, "is in no known place")
-                        .help("known are requirements/, suites/, profiles/, starts.yaml and tolerances.yaml"),
-                ),
+                _ => {
+                    problems.push(Problem::without_place(&source.name, "is in no known place").help(
+                        "known are requirements/, suites/, profiles/, coverage/, starts.yaml and tolerances.yaml",
+                    ))
+                }
             }
         }
         match tolerances {
-            Some(tolerances) if problems.is_empty() => Ok(Library { suites, starts, ledger, tolerances, profiles }),
+            Some(tolerances) if problems.is_empty() => {
+                Ok(Library { suites, starts, ledger, tolerances, profiles, coverage })
+            }
             Some(_) => Err(problems),
             None => {
                 problems.push(Problem::without_place("testcases/tolerances.yaml", "is missing"));
@@ -190,6 +200,18 @@ impl Library {
                 }
             }
             self.check_case(case, &mut problems);
+        }
+        for role in [Role::Device, Role::Master] {
+            match self.coverage.get(&role.to_string()) {
+                None => problems.push(Problem::without_place(&format!("testcases/coverage/{role}.yaml"), "is missing")),
+                Some(goals) => {
+                    for id in goals.requirements.values().filter(|id| self.ledger.get(id).is_none()) {
+                        let place = format!("testcases/coverage/{role}.yaml");
+                        let message = format!("names an unknown requirement `{id}`");
+                        problems.push(Problem::without_place(&place, message).help(suggestion(id, self.ledger.ids())));
+                    }
+                }
+            }
         }
         for requirement in self.ledger.iter() {
             let cited = cited.contains(requirement.id.as_str());

@@ -4,6 +4,7 @@ use crate::link::Link;
 use crate::oracle::{Mask, Mismatch, Setup};
 use crate::profile::Profile;
 use crate::trace::{Margin, Told, hex};
+use crate::walk::Walked;
 use fsct_adapters::{
     ClockKind, Description, Dut, DutError, Keep, MADE_UP, Mode, Observation, Octets, Pco, Recorder, Role, Seen,
     Service, SmiRequest, SmiResult, Stimulus,
@@ -465,6 +466,11 @@ impl<'d> Session<'d> {
             scl.chain(ossde).for_each(|(name, count)| *sum.entry(name).or_default() += count);
         }
         sum
+    }
+
+    /// What followed what on any port.
+    pub fn walked(&self) -> Walked {
+        self.links.iter().fold(Walked::default(), |walked, link| walked.union(link.oracle.walked()))
     }
 
     /// Tolerances the DUT made use of on any port.

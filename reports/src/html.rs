@@ -1,6 +1,7 @@
 //! `report.html`: one file, readable without script and without network.
 
 use crate::case_html::{self, Room};
+use crate::coverage_html;
 use crate::decode::Side;
 use crate::duts::Duts;
 use crate::journal::Run;
@@ -51,7 +52,7 @@ pub fn render(run: &Run) -> String {
                     (incomplete(run, &summary))
                     (facts(run, &summary))
                     (differing(run, &summary))
-                    (coverage(&summary))
+                    (coverage(run, &summary))
                     (tolerances(run, &summary))
                     (attention(run, &room))
                     (suites(run, &room))
@@ -177,7 +178,6 @@ fn micro(ns: u64) -> String {
     format!("{} µs", ns / 1_000)
 }
 
-/// The transitions of every machine there is a DUT for, and what else a record may hold.
 /// What several DUTs of one role came to, where that is not the same.
 fn differing(run: &Run, summary: &Summary) -> Markup {
     let duts = Duts::of(&run.header);
@@ -205,7 +205,8 @@ fn differing(run: &Run, summary: &Summary) -> Markup {
     }
 }
 
-fn coverage(summary: &Summary) -> Markup {
+/// The transitions of every machine there is a DUT for, and what else a record may hold.
+fn coverage(run: &Run, summary: &Summary) -> Markup {
     let count = |name: &String| summary.transitions.get(name).copied();
     let machines = Machine::ALL.map(|machine| (machine, machine.transitions()));
     let known = |name: &String| machines.iter().any(|(_, names)| names.contains(name));
@@ -218,6 +219,10 @@ fn coverage(summary: &Summary) -> Markup {
             h3 { (machine.title()) (together(machine.side(), summary)) }
             p { (taken) " of " (names.len()) " were taken" @if taken < names.len() { "; the others are marked “never”" } "." }
             (cells(names, count))
+            (coverage_html::diagram(*machine, count))
+            @if let Some(reached) = summary.coverage.iter().find(|reached| machine.walks(&reached.role)) {
+                (coverage_html::in_a_row(reached, &run.header))
+            }
         }
         @if !others.is_empty() {
             h3 { "Of no known machine" }

@@ -3,6 +3,8 @@
 mod case_html;
 mod chart;
 mod compare;
+mod coverage;
+mod coverage_html;
 pub mod decode;
 mod duts;
 pub mod gauntlet;
@@ -16,6 +18,7 @@ mod summary;
 mod text;
 
 pub use compare::Differing;
+pub use coverage::{Coverage, Reached};
 pub use journal::{FILE, Journal, ReadError, Reader, Run, read};
 pub use story::{headline, story};
 pub use summary::{Summary, execution_name, verdict_name};

@@ -34,6 +34,11 @@ impl Machine {
         }
     }
 
+    /// Whether the goals of a role are about this machine: what follows what is told of the two SCLs.
+    pub fn walks(self, role: &str) -> bool {
+        matches!((self, role), (Machine::FsDevice, "device") | (Machine::FsMaster, "master"))
+    }
+
     /// Its transitions in order. No two machines have one of the same name.
     pub fn transitions(self) -> Vec<String> {
         let (prefix, numbers) = match self {

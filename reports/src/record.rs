@@ -40,6 +40,34 @@ pub struct Header {
     pub not_applicable: Vec<(String, String)>,
     /// Every tolerance in force: id (`A19`), then what it allows.
     pub tolerances: BTreeMap<String, String>,
+    /// What each machine of the DUTs can be led through beyond single transitions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub machines: Vec<MachineInfo>,
+}
+
+/// What a machine can be led through. Transitions and steps that follow each other are written one behind the other: `T24 T22`.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MachineInfo {
+    /// The role of a DUT that has it, `device` or `master`.
+    pub role: String,
+    /// Steps, each everything between two waiting states: name, then its transitions.
+    pub steps: Vec<(String, String)>,
+    /// Pairs of transitions.
+    pub pairs: Goal,
+    /// Triples of transitions.
+    pub triples: Goal,
+    /// Pairs of steps.
+    pub step_pairs: Goal,
+}
+
+/// What can be walked of one kind, and what cannot.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Goal {
+    /// Everything that can.
+    pub feasible: Vec<String>,
+    /// What the rows of the machine would allow but its guards rule out, with the reason.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub infeasible: Vec<(String, String)>,
 }
 
 /// The device under test, in its own words and the words of the command line. Hostile text: escape it.
@@ -172,6 +200,9 @@ pub struct CaseRecord {
     pub tolerances: BTreeMap<String, String>,
     /// Transitions the DUT went through, `T22` to count.
     pub transitions: BTreeMap<String, u64>,
+    /// What of its machine followed what, each once.
+    #[serde(default, skip_serializing_if = "Walked::is_empty")]
+    pub walked: Walked,
     /// Start condition.
     pub start: String,
     /// Steps with their expectations; index 0 is the start condition, the last is the liveness check.
@@ -184,6 +215,26 @@ pub struct CaseRecord {
     pub duration_ns: u64,
     /// Command line that runs this case alone.
     pub replay: String,
+}
+
+/// Sequences a DUT went through in a case, by the names of a [`MachineInfo`].
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Walked {
+    /// Pairs of transitions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pairs: Vec<String>,
+    /// Triples of transitions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub triples: Vec<String>,
+    /// Pairs of steps.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub step_pairs: Vec<String>,
+}
+
+impl Walked {
+    fn is_empty(&self) -> bool {
+        self.pairs.is_empty() && self.triples.is_empty() && self.step_pairs.is_empty()
+    }
 }
 
 /// Edition, mode and process data sizes of a case.

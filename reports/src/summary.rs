@@ -1,6 +1,7 @@
 //! `summary.json`: the run in a few numbers, and the exit code.
 
 use crate::compare::{Comparison, Differing};
+use crate::coverage::Coverage;
 use crate::decode::Side;
 use crate::journal::{ReadError, Reader, Run};
 use crate::machine::Machine;
@@ -20,6 +21,9 @@ pub struct Summary {
     pub execution: BTreeMap<String, usize>,
     /// How often each transition of the DUT's machine was taken, over all cases.
     pub transitions: BTreeMap<String, u64>,
+    /// How far each machine was led beyond single transitions; empty for a record without goals.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub coverage: Vec<Coverage>,
     /// Tolerances made use of, with the number of cases.
     pub tolerances: BTreeMap<String, usize>,
     /// Seed.
@@ -48,7 +52,7 @@ impl Summary {
             summary.add(case);
             comparison.add(case);
         });
-        summary.end(run.footer.as_ref(), run.damaged.is_some(), comparison);
+        summary.end(&run.header, run.footer.as_ref(), run.damaged.is_some(), comparison);
         summary
     }
 
@@ -66,7 +70,7 @@ impl Summary {
             summary.add(&case);
             comparison.add(&case);
         }
-        summary.end(reader.footer(), reader.damaged().is_some(), comparison);
+        summary.end(reader.header(), reader.footer(), reader.damaged().is_some(), comparison);
         Ok(summary)
     }
 
@@ -77,6 +81,7 @@ impl Summary {
             verdicts: VERDICTS.map(|verdict| (verdict_name(verdict).to_owned(), 0)).into(),
             execution: EXECUTIONS.map(|execution| (execution_name(execution).to_owned(), 0)).into(),
             transitions: roles.iter().flat_map(|side| side.transitions()).map(|name| (name, 0)).collect(),
+            coverage: Coverage::begin(header),
             tolerances: BTreeMap::new(),
             seed: header.seed,
             duts: header.duts.clone(),
@@ -96,12 +101,16 @@ impl Summary {
             let sum = self.transitions.entry(transition.clone()).or_default();
             *sum = sum.saturating_add(*count);
         }
+        if let Some(machine) = self.coverage.iter_mut().find(|machine| machine.role == case.role) {
+            machine.add(case);
+        }
         for tolerance in case.tolerances.keys() {
             *self.tolerances.entry(tolerance.clone()).or_default() += 1;
         }
     }
 
-    fn end(&mut self, footer: Option<&Footer>, damaged: bool, comparison: Comparison) {
+    fn end(&mut self, header: &Header, footer: Option<&Footer>, damaged: bool, comparison: Comparison) {
+        self.coverage.iter_mut().for_each(|machine| machine.end(header));
         if let Some((compared, differing)) = comparison.end() {
             self.compared = Some(compared);
             self.differing = differing;

@@ -13,6 +13,7 @@ mod list;
 mod report;
 mod run;
 mod simulate;
+mod tours;
 mod vectors;
 
 use crate::library::Library;
@@ -66,6 +67,9 @@ enum Command {
     Vectors(vectors::Args),
     /// Compute the signature of octets
     Crc(crc::Args),
+    /// Write the generated tours of a role: testcases/suites/ROLE-tours.yaml
+    #[command(name = tours::NAME, hide = true)]
+    Tours(tours::Args),
     /// Load a library and serve it: what `lib:` starts
     #[command(name = host::NAME, hide = true)]
     Host(host::Args),
@@ -89,6 +93,7 @@ pub fn main() -> ExitCode {
         Command::Gauntlet(args) => gauntlet::run(&args),
         Command::Vectors(args) => vectors::run(&args),
         Command::Crc(args) => crc::run(&args),
+        Command::Tours(args) => tours::run(&args),
         Command::Host(args) => host::run(&args),
     });
     ExitCode::from(code.unwrap_or(RIG))

@@ -2,6 +2,7 @@
 
 use super::{Cases, RIG, USAGE, bench, colour, fail, print, show};
 use crate::campaign::{Bench, Judges, Run, dut_info};
+use crate::coverage::Coverage;
 use crate::library::Library;
 use crate::oracle::{Mask, Tolerances};
 use crate::plan::{Plan, Selection, plan, unreached};
@@ -165,6 +166,12 @@ fn execute(args: &Args) -> Result<u8, u8> {
         planned: plans.iter().map(|plan| plan.cases.len()).sum(),
         not_applicable: plans.iter().flat_map(|plan| plan.not_applicable.clone()).collect(),
         tolerances: self::in_force(in_force, &library.tolerances),
+        machines: library
+            .coverage
+            .values()
+            .filter(|goals| candidates.iter().any(|one| one.profile.role == goals.role))
+            .map(Coverage::info)
+            .collect(),
     };
     let interrupted = Arc::new(AtomicBool::new(false));
     for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
@@ -386,6 +393,33 @@ fn compare(plans: &[Plan<'_>], taken: &[(&str, Duration)], summary: &Summary) {
     }
 }
 
+/// What was taken in a row, in a few words.
+fn walked(summary: &Summary) -> String {
+    let told = summary.coverage.iter().filter(|_| summary.cases > 0);
+    let said: Vec<String> = told
+        .map(|one| {
+            let (triples, steps) = (one.triples.said(), one.step_pairs.said());
+            format!(" · {}: {triples} triples, {steps} step pairs", one.role)
+        })
+        .collect();
+    said.concat()
+}
+
+/// What can be taken in a row and was not, as long as that is a short list; and what cannot be and was.
+fn in_a_row(summary: &Summary) {
+    for one in summary.coverage.iter().filter(|_| summary.cases > 0) {
+        for (kind, reached) in one.kinds() {
+            if (1..=TOLD).contains(&reached.missing.len()) {
+                print(format!("{kind} not taken by the {}: {}", one.role, reached.missing.join(", ")));
+            }
+            for (name, said) in &reached.contradicting {
+                let name = visible(name);
+                print(format!("CONTRADICTION: the {} took `{name}` of the {kind}, {}", one.role, visible(said)));
+            }
+        }
+    }
+}
+
 fn conclude(args: &Args, plans: &[Plan<'_>], summary: &Summary, interrupted: bool) {
     let coloured = colour(std::io::stdout().is_terminal());
     let mut suites: BTreeMap<&str, usize> = BTreeMap::new();
@@ -405,6 +439,7 @@ fn conclude(args: &Args, plans: &[Plan<'_>], summary: &Summary, interrupted: boo
         (_, []) => " · every transition taken".to_owned(),
         (_, names) => format!(" · not taken: {}", names.join(" ")),
     };
+    let coverage = coverage + &walked(summary);
     let verdict = match summary.exit_code() {
         0 => "conformant",
         1 => "not conformant",
@@ -419,6 +454,7 @@ fn conclude(args: &Args, plans: &[Plan<'_>], summary: &Summary, interrupted: boo
         counts.concat(),
         summary.seed
     ));
+    in_a_row(summary);
     let not_applicable: usize = plans.iter().map(|plan| plan.not_applicable.len()).sum();
     if not_applicable > 0 {
         print(format!("{not_applicable} not applicable, with the reason in the report"));

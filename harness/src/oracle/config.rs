@@ -1,6 +1,8 @@
 //! One configuration a DUT may be in: its machine, its timer, and the SPDUs it has made but may not show yet.
 
 use super::Mask;
+use crate::walk::{Graph, Trail};
+use fsct_adapters::Role;
 use fsct_protocol::scl::{Path, State, T};
 use fsct_protocol::spdu::Pd;
 
@@ -18,8 +20,14 @@ pub trait Machine: Copy + PartialEq {
     /// The state before its first transition.
     const START: State;
 
+    /// The side that has it.
+    const ROLE: Role;
+
     /// The state it is in.
     fn state(&self) -> State;
+
+    /// Whether the SPDU processed last was in error.
+    fn erred(&self) -> bool;
 }
 
 /// What a DUT shows from a certain exchange on: its SPDU and its application services.
@@ -69,6 +77,8 @@ pub struct Config<M, S> {
     pub taken: [u32; TRANSITIONS],
     /// Transitions of this exchange: an expiry, a reception.
     pub via: [Path; 2],
+    /// What followed what since the SCL began.
+    pub trail: Trail,
 }
 
 impl<M: Machine, S: Snapshot> Config<M, S> {
@@ -86,6 +96,7 @@ impl<M: Machine, S: Snapshot> Config<M, S> {
             decided: Mask::NONE,
             taken: [0; TRANSITIONS],
             via: [Path::default(); 2],
+            trail: Trail::default(),
         }
     }
 
@@ -131,6 +142,7 @@ impl<M: Machine, S: Snapshot> Config<M, S> {
     pub fn took(&mut self, path: Path) {
         let [first, second] = &mut self.via;
         *(if first.is_empty() { first } else { second }) = path;
+        self.trail.went(Graph::role(M::ROLE), path, self.machine.erred());
         for T(number) in path.iter() {
             if let Some(slot) =
                 usize::from(number).checked_sub(M::FIRST.into()).and_then(|index| self.taken.get_mut(index))

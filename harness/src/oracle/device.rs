@@ -5,7 +5,7 @@ use super::explain::{self, Mismatch, Words, hex};
 use super::set::{self, Set};
 use super::setup::{App, Setup};
 use super::{Mask, explain_device};
-use fsct_adapters::{Octets, Service};
+use fsct_adapters::{Octets, Role, Service};
 use fsct_protocol::Edition;
 use fsct_protocol::scl::device::{Readings, Received};
 use fsct_protocol::scl::{Device, Path, State, T, Var};
@@ -46,9 +46,14 @@ pub struct Answer {
 impl Machine for Device {
     const FIRST: u8 = 20;
     const START: State = State(20);
+    const ROLE: Role = Role::Device;
 
     fn state(&self) -> State {
         Device::state(self)
+    }
+
+    fn erred(&self) -> bool {
+        self.get(Var::CommErr) == 1
     }
 }
 

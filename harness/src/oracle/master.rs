@@ -6,7 +6,7 @@ use super::explain::{self, Mismatch, Words, data};
 use super::set::{self, Set};
 use super::setup::{App, Setup};
 use super::{Mask, explain_master};
-use fsct_adapters::{Octets, Service};
+use fsct_adapters::{Octets, Role, Service};
 use fsct_protocol::scl::master::Answer;
 use fsct_protocol::scl::{Master, Path, State, T, Var};
 use fsct_protocol::spdu::{Control, Pd, View};
@@ -92,9 +92,14 @@ pub struct Port {
 impl Machine for Port {
     const FIRST: u8 = 1;
     const START: State = State(0);
+    const ROLE: Role = Role::Master;
 
     fn state(&self) -> State {
         self.master.state()
+    }
+
+    fn erred(&self) -> bool {
+        self.master.get(Var::Faults) == 1
     }
 }
 

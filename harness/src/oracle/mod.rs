@@ -22,6 +22,7 @@ pub use ossde::OssdeOracle;
 pub use setup::{App, Setup};
 pub use tolerance::{Mask, Stance, Tolerance, Tolerances};
 
+use crate::walk::Walked;
 use fsct_adapters::{Octets, Role, Service};
 use fsct_protocol::scl::State;
 
@@ -100,6 +101,14 @@ impl Oracle {
             Oracle::Master(oracle) => (1, oracle.set().taken()),
         };
         (first..).zip(taken).filter(|(_, count)| *count > 0).collect()
+    }
+
+    /// What followed what, over the whole case.
+    pub fn walked(&self) -> Walked {
+        match self {
+            Oracle::Device(oracle) => oracle.set().walked(),
+            Oracle::Master(oracle) => oracle.set().walked(),
+        }
     }
 
     /// Tolerances the DUT made use of, over the whole case.

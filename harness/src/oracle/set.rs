@@ -2,6 +2,7 @@
 
 use super::config::{self, Config, Machine, Snapshot, TRANSITIONS, Window};
 use super::{Mask, Mismatch};
+use crate::walk::Walked;
 use fsct_protocol::scl::{State, T};
 use fsct_protocol::spdu::Pd;
 use fsct_reports::record::Verdict;
@@ -23,6 +24,7 @@ pub struct Set<M, S> {
     pub last_at: u64,
     taken_before: [u64; TRANSITIONS],
     used_before: Mask,
+    walked_before: Walked,
 }
 
 impl<M: Machine, S: Snapshot> Set<M, S> {
@@ -35,6 +37,7 @@ impl<M: Machine, S: Snapshot> Set<M, S> {
             last_at: 0,
             taken_before: [0; TRANSITIONS],
             used_before: Mask::NONE,
+            walked_before: Walked { pairs: 0, triples: 0, step_pairs: 0 },
         }
     }
 
@@ -42,11 +45,13 @@ impl<M: Machine, S: Snapshot> Set<M, S> {
     pub fn forget(&mut self) {
         self.taken_before = self.taken();
         self.used_before = self.used();
+        self.walked_before = self.walked();
         self.configs.clear();
     }
 
     /// An SCL begins with this one configuration.
     pub fn begin(&mut self, machine: M, idle: S, received: Pd) {
+        self.forget();
         self.configs = vec![Config::new(machine, idle, received)];
     }
 
@@ -119,6 +124,11 @@ impl<M: Machine, S: Snapshot> Set<M, S> {
             taken.iter_mut().zip(best.taken).for_each(|(sum, count)| *sum += u64::from(count));
         }
         taken
+    }
+
+    /// What followed what, over the whole case.
+    pub fn walked(&self) -> Walked {
+        self.best().map_or(self.walked_before, |best| self.walked_before.union(best.trail.walked))
     }
 
     /// Tolerances the DUT made use of, over the whole case.

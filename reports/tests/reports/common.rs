@@ -16,6 +16,7 @@ pub fn header(planned: usize) -> Header {
         planned,
         not_applicable: vec![("FSD-0999[edition=v1.1]".into(), "the DUT does not serve `app`".into())],
         tolerances: BTreeMap::from([("A19".into(), "T29 read sequentially (tolerated)".into())]),
+        machines: Vec::new(),
     }
 }
 
@@ -85,6 +86,7 @@ pub fn passed(number: usize) -> CaseRecord {
         reasons: Vec::new(),
         tolerances: BTreeMap::new(),
         transitions: BTreeMap::from([("T21".into(), 1), ("T22".into(), 2)]),
+        walked: Walked::default(),
         start: "waiting".into(),
         steps: vec![
             StepRecord { text: "start: waiting".into(), executed: true, entries: (0, 1), checks: Vec::new() },

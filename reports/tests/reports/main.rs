@@ -2,6 +2,7 @@
 
 mod common;
 mod compare;
+mod coverage;
 mod decode;
 mod journal;
 mod rendered;
