@@ -4,6 +4,7 @@
 
 pub mod campaign;
 pub mod case;
+pub mod channel;
 pub mod cli;
 pub mod engine;
 pub mod expect;
@@ -11,6 +12,7 @@ pub mod keeper;
 pub mod ledger;
 pub mod library;
 pub mod link;
+pub mod matrix;
 pub mod oracle;
 pub mod partner;
 pub mod plan;

@@ -2,6 +2,7 @@
 
 use crate::case::{self, Case, Covered, Start, Suite, model::Action, model::Step};
 use crate::ledger::{Class, Ledger};
+use crate::matrix::{self, Matrix};
 use crate::oracle::Tolerances;
 use crate::problem::{Problem, Source, suggestion};
 use crate::profile::Profile;
@@ -19,7 +20,7 @@ fn embedded_sources() -> Vec<Arc<Source>> {
     EMBEDDED.iter().map(source).collect()
 }
 
-/// Suites, start conditions, ledger, tolerances and profiles.
+/// Suites, start conditions, ledger, error matrix, tolerances and profiles.
 #[derive(Debug)]
 pub struct Library {
     /// Suites by name.
@@ -28,6 +29,8 @@ pub struct Library {
     pub starts: Vec<Start>,
     /// Ledger.
     pub ledger: Ledger,
+    /// The error matrix; cases of one's own do without.
+    pub matrix: Option<Matrix>,
     /// Tolerances.
     pub tolerances: Tolerances,
     /// Profiles by name.
@@ -95,6 +98,7 @@ impl Library {
         let mut suites = Vec::new();
         let mut starts = Vec::new();
         let mut ledger = Ledger::default();
+        let mut matrix = None;
         let mut tolerances = None;
         let mut profiles = BTreeMap::new();
         for source in &sources {
@@ -110,17 +114,21 @@ impl Library {
                     profiles.insert(profile.name.clone(), profile);
                 }),
                 (_, "starts.yaml") => gather(case::starts(source), &mut problems, |found| starts = found),
+                (_, "error-matrix.yaml") => {
+                    gather(Matrix::parse(source), &mut problems, |found| matrix = Some(found));
+                }
                 (_, "tolerances.yaml") => {
                     gather(Tolerances::parse(source), &mut problems, |found| tolerances = Some(found));
                 }
-                _ => problems.push(
-                    Problem::without_place(&source.name, "is in no known place")
-                        .help("known are requirements/, suites/, profiles/, starts.yaml and tolerances.yaml"),
-                ),
+                _ => problems.push(Problem::without_place(&source.name, "is in no known place").help(
+                    "known are requirements/, suites/, profiles/, starts.yaml, error-matrix.yaml and tolerances.yaml",
+                )),
             }
         }
         match tolerances {
-            Some(tolerances) if problems.is_empty() => Ok(Library { suites, starts, ledger, tolerances, profiles }),
+            Some(tolerances) if problems.is_empty() => {
+                Ok(Library { suites, starts, ledger, matrix, tolerances, profiles })
+            }
             Some(_) => Err(problems),
             None => {
                 problems.push(Problem::without_place("testcases/tolerances.yaml", "is missing"));
@@ -190,6 +198,15 @@ impl Library {
                 }
             }
             self.check_case(case, &mut problems);
+        }
+        match &self.matrix {
+            Some(matrix) => matrix.check(&self.suites, &mut problems),
+            None => {
+                for suite in self.suites.iter().filter(|suite| suite.group.as_deref() == Some(matrix::GROUP)) {
+                    let message = format!("suite `{}` belongs to an error matrix, but there is none", suite.name);
+                    problems.push(Problem::without_place("testcases/error-matrix.yaml", message));
+                }
+            }
         }
         for requirement in self.ledger.iter() {
             let cited = cited.contains(requirement.id.as_str());

@@ -1,6 +1,6 @@
 //! The lower tester: builds the SPDUs a case asks for, legal and illegal, as FS-Master or as FS-Device.
 
-use crate::case::model::{Corrupt, Count, Data, Exchange, Field, Image, PortNum, Signature};
+use crate::case::model::{Corrupt, Count, Data, Exchange, Field, Image, KEPT, PortNum, Signature};
 use crate::keeper::Keeper;
 use crate::oracle::Setup;
 use fsct_adapters::{Octets, Role};
@@ -9,6 +9,7 @@ use fsct_protocol::crc::{Reading, crc16, crc32, signature};
 use fsct_protocol::spdu::{Pd, Wire, inv3, succ};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng;
+use std::collections::VecDeque;
 
 /// What the tester sent and will count on from.
 pub struct Tester {
@@ -24,13 +25,24 @@ pub struct Tester {
     pub octets: Option<Octets>,
     /// When the first copy of the SPDU sent last went out, in nanoseconds.
     pub first_copy: u64,
+    /// The SPDUs sent, the last one first.
+    sent: VecDeque<Octets>,
 }
 
 impl Tester {
     /// A tester that has sent nothing.
     pub fn new(setup: &Setup, rng: Pcg64Mcg) -> Tester {
         let pd = Pd::safe(setup.sent_pd());
-        Tester { pd, setup: setup.clone(), rng, count: None, answered: None, octets: None, first_copy: 0 }
+        Tester {
+            pd,
+            setup: setup.clone(),
+            rng,
+            count: None,
+            answered: None,
+            octets: None,
+            first_copy: 0,
+            sent: VecDeque::new(),
+        }
     }
 
     /// Forgets what was sent: the DUT has been switched off.
@@ -38,6 +50,22 @@ impl Tester {
         self.count = None;
         self.answered = None;
         self.octets = None;
+        self.sent.clear();
+    }
+
+    /// The SPDU sent this many SPDUs before the last one.
+    pub fn ago(&self, count: usize) -> Option<Octets> {
+        self.sent.get(count).copied()
+    }
+
+    /// Keeps an SPDU for `ago`; a copy of the last one is none.
+    pub fn remember(&mut self, octets: Option<Octets>) {
+        if let Some(octets) = octets
+            && self.sent.front() != Some(&octets)
+        {
+            self.sent.truncate(KEPT - 1);
+            self.sent.push_front(octets);
+        }
     }
 
     /// A virtual FS-Device has taken over: the tester goes on from what it sent.
@@ -46,6 +74,7 @@ impl Tester {
             self.first_copy = now;
         }
         self.octets = keeper.octets();
+        self.remember(self.octets);
         self.pd = keeper.sent();
         self.answered = keeper.answered();
         self.count = self.answered.map(inv3);
@@ -69,6 +98,7 @@ impl Tester {
             Count::Next => mirrored(next),
             Count::Same => self.count.unwrap_or(0),
             Count::Jump(more) => mirrored(jump(more)),
+            Count::Bit(bit) => mirrored(next) ^ 1 << bit,
             Count::Exactly(count) => count,
         };
         match &exchange.image {
@@ -82,6 +112,12 @@ impl Tester {
             Image::Standard => {
                 let octets = self.pattern(self.length());
                 return self.instead(Octets::new(&octets).unwrap_or_default(), "standard process data");
+            }
+            Image::Ago(count) => {
+                return match self.ago(*count) {
+                    Some(octets) => self.instead(octets, &format!("the SPDU sent {count} before the last")),
+                    None => self.build(&Exchange { image: Image::Lost, ..exchange.clone() }, echo, shown),
+                };
             }
             Image::Exactly(octets) => {
                 return self.instead(Octets::new(octets).unwrap_or_default(), "octets of the case");
@@ -121,6 +157,7 @@ impl Tester {
         let mut image = emitted.octets().to_vec();
         image.extend(&exchange.nsr);
         self.octets = Octets::new(&image).or(Octets::new(emitted.octets()));
+        self.remember(self.octets);
         (self.octets, notes.join(", "))
     }
 

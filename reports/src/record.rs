@@ -40,6 +40,40 @@ pub struct Header {
     pub not_applicable: Vec<(String, String)>,
     /// Every tolerance in force: id (`A19`), then what it allows.
     pub tolerances: BTreeMap<String, String>,
+    /// The error matrix, one part a role, when cases of it were planned.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub matrix: Vec<MatrixInfo>,
+}
+
+/// The error matrix for one role: which cases show what.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MatrixInfo {
+    /// `device` or `master`.
+    pub role: String,
+    /// Headings of the columns: direction and state.
+    pub columns: Vec<String>,
+    /// One row an error class.
+    pub rows: Vec<MatrixRow>,
+}
+
+/// An error class of the matrix.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MatrixRow {
+    /// Its name.
+    pub class: String,
+    /// One cell a column.
+    pub cells: Vec<MatrixCell>,
+}
+
+/// A cell of the matrix.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MatrixCell {
+    /// Ids of the cases that show it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cases: Vec<String>,
+    /// Why there is none; empty where there are cases.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub none: String,
 }
 
 /// The device under test, in its own words and the words of the command line. Hostile text: escape it.
