@@ -68,7 +68,8 @@ impl Partner {
                 gateway.operate(session)?;
                 session.exchange(keeper.octets())?;
                 let answered = keeper.answered();
-                let octets = back.pass(session, tester, keeper.octets(), |counter| answered != Some(counter));
+                let octets = back
+                    .pass(session.now, session.link(), tester, keeper.octets(), |counter| answered != Some(counter));
                 keeper.received(session.now, octets.as_ref(), session.setup());
                 tester.follow(keeper, session.now);
                 Ok(())
@@ -141,7 +142,7 @@ impl VirtualMaster {
     fn exchange(&mut self, back: &mut Channel, session: &mut Session<'_>, tester: &mut Tester) -> Result<(), Stop> {
         session.exchange(self.octets)?;
         let awaited = inv3(self.master.control().mcount);
-        let octets = back.pass(session, tester, self.octets, |counter| counter == awaited);
+        let octets = back.pass(session.now, session.link(), tester, self.octets, |counter| counter == awaited);
         let setup = session.setup();
         let answer = setup.view(octets.as_ref()).map(|view| Answer {
             status: view.status(),

@@ -108,7 +108,11 @@ impl Tester {
                 self.octets = None;
                 return (None, "lost".to_owned());
             }
-            Image::Echo => return self.instead(echo.unwrap_or_default(), "the DUT's own answer"),
+            Image::Echo => {
+                // Where the DUT presents nothing, nothing comes back.
+                self.octets = echo;
+                return (echo, "the DUT's own answer".to_owned());
+            }
             Image::Standard => {
                 let octets = self.pattern(self.length());
                 return self.instead(Octets::new(&octets).unwrap_or_default(), "standard process data");
@@ -297,6 +301,39 @@ mod tests {
         };
         assert_eq!(raw, 0);
         assert_eq!(signature(mode, Reading::Preset, &secured), 1);
+    }
+
+    /// A tester of an FS-Device that has sent MCount 0 to 3.
+    fn running() -> (Tester, Vec<Octets>) {
+        let mut tester = Tester::new(&crate::channel::tests::setup(), Pcg64Mcg::new(1));
+        let sent = (0..4).filter_map(|_| tester.build(&exchange("{}"), None, None).0).collect();
+        (tester, sent)
+    }
+
+    fn exchange(text: &str) -> Exchange {
+        crate::case::tests::exchange(text)
+    }
+
+    #[test]
+    fn an_earlier_spdu_goes_out_octet_for_octet_and_counts_for_nothing() {
+        let (mut tester, sent) = running();
+        let mut built = |text: &str| tester.build(&exchange(text), None, None).0;
+        assert_eq!(built("{image: 0 ago}").as_ref(), sent.last());
+        assert_eq!(built("{image: 3 ago}").as_ref(), sent.first());
+        assert_eq!(built("{image: 4 ago}"), None, "no such SPDU was sent");
+        let next = built("{}").expect("an SPDU");
+        assert_eq!(next.as_slice()[3] >> 5, 4);
+    }
+
+    #[rstest]
+    #[case("bit 0", 5)]
+    #[case("bit 1", 6)]
+    #[case("bit 2", 0)]
+    fn a_bit_of_the_counter_is_hit_and_the_signature_is_right(#[case] bit: &str, #[case] mcount: u8) {
+        let (mut tester, _) = running();
+        let octets = tester.build(&exchange(&format!("{{MCount: {bit}}}")), None, None).0.expect("an SPDU");
+        let view = fsct_protocol::spdu::View::new(octets.as_slice(), ProtMode::Crc16, 2).expect("its length is right");
+        assert_eq!((view.counter(), view.signature_matches(Reading::Preset)), (mcount, true));
     }
 
     #[test]

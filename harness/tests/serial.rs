@@ -148,8 +148,8 @@ fn null_modem() -> [(TTYPort, String); 2] {
 }
 
 #[rstest]
-#[case::device("device", fsct_c::DEVICE, 1308)]
-#[case::master("master", fsct_c::MASTER, 1050)]
+#[case::device("device", fsct_c::DEVICE, 1668)]
+#[case::master("master", fsct_c::MASTER, 1434)]
 fn a_stack_in_c_at_the_other_end_of_a_line(#[case] role: &str, #[case] sources: &[&str], #[case] cases: usize) {
     let sources = [fsct_c::CLIENT, sources].concat();
     let Some(program) = fsct_c::build(fsct_c::Kind::Program, &sources, &["-DFSCT_CLIENT_PAYLOAD=2048"]) else { return };

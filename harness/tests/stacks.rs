@@ -20,16 +20,16 @@ fn conforms(url: &str, name: &str, cases: &str) {
 }
 
 #[rstest]
-#[case::device("device", DEVICE, "1308")]
-#[case::master("master", MASTER, "1050")]
+#[case::device("device", DEVICE, "1668")]
+#[case::master("master", MASTER, "1434")]
 fn a_stack_in_c_conforms_as_a_library(#[case] name: &str, #[case] sources: &[&str], #[case] cases: &str) {
     let Some(library) = build(Kind::Library, sources, &[]) else { return };
     conforms(&format!("lib:{}", library.display()), &format!("c-lib-{name}"), cases);
 }
 
 #[rstest]
-#[case::device("device", DEVICE, "1308")]
-#[case::master("master", MASTER, "1050")]
+#[case::device("device", DEVICE, "1668")]
+#[case::master("master", MASTER, "1434")]
 fn a_stack_in_c_conforms_as_a_program_and_keeps_to_its_memory(
     #[case] name: &str,
     #[case] sources: &[&str],
@@ -56,7 +56,7 @@ fn a_mistake_compiled_in_is_found_with_its_clause(#[case] fault: u8, #[case] cla
 fn a_stack_in_python_conforms() {
     if fsct_c::there("python3") {
         let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../adapters/python/fs_device.py");
-        conforms(&format!("exec:python3 '{script}'"), "python", "1308");
+        conforms(&format!("exec:python3 '{script}'"), "python", "1668");
     }
 }
 

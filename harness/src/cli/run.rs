@@ -257,11 +257,7 @@ pub(super) fn given_profiles(names: &[String], library: &Library) -> Result<Vec<
 }
 
 /// The profile a DUT of this role is judged by: the one given, or the default.
-pub(super) fn candidate_profile<'a>(
-    role: Role,
-    given: &'a [Profile],
-    library: &'a Library,
-) -> Result<&'a Profile, u8> {
+pub(super) fn candidate_profile<'a>(role: Role, given: &'a [Profile], library: &'a Library) -> Result<&'a Profile, u8> {
     let own = given.iter().find(|profile| profile.role == role);
     own.or_else(|| library.profiles.get(&default_profile(role)))
         .ok_or_else(|| fail(USAGE, format!("there is no profile for a {role}; give one by --profile")))
