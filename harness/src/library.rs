@@ -125,6 +125,8 @@ impl Library {
                 )),
             }
         }
+        // Last, so that the first failure told is that of a suite about one thing.
+        suites.sort_by_key(|suite: &Suite| suite.group.as_deref() == Some(matrix::GROUP));
         match tolerances {
             Some(tolerances) if problems.is_empty() => {
                 Ok(Library { suites, starts, ledger, matrix, tolerances, profiles })
