@@ -3,6 +3,7 @@
 mod port;
 
 use crate::case::model::*;
+use crate::channel::Channel;
 use crate::expect::{self, Before};
 use crate::link::Link;
 use crate::oracle::Mask;
@@ -295,6 +296,12 @@ impl<'s, 'd> Engine<'s, 'd> {
         let echo = self.session.link().image;
         let shown = self.session.answer().map(|view| view.counter());
         let shown = shown.filter(|_| self.session.role() == Role::Master);
+        if let Image::Ago(count) = exchange.image
+            && self.tester().ago(count).is_none()
+        {
+            let observed = "no such SPDU was sent";
+            self.reason(Verdict::Inconclusive, "case/ago", "", &format!("an SPDU sent {count} ago"), observed);
+        }
         let (octets, note) = self.tester_mut().build(exchange, echo, shown);
         self.session.margin.announce(note);
         let started = self.session.now + self.session.profile.master_cycle_time_ns;
@@ -364,15 +371,25 @@ impl<'s, 'd> Engine<'s, 'd> {
 
     fn partner(&mut self, wanted: &super::case::model::Partner, before: &Before) -> Result<Vec<Expectation>, Stop> {
         let exchanges = match wanted.within {
-            Some(cycles) => u64::from(cycles) * (self.session.profile.answer_latency + 1),
+            Some(Within::SclCycles(cycles)) => u64::from(cycles) * (self.session.profile.answer_latency + 1),
+            Some(Within::Time(duration)) => {
+                self.nanoseconds(duration).unsigned_abs().div_ceil(self.session.profile.master_cycle_time_ns)
+            }
             None => self.liveness_exchanges(),
         };
+        let exchanges = if wanted.from == From::Start && wanted.within.is_some() {
+            exchanges + self.starting_exchanges()
+        } else {
+            exchanges
+        };
         let index = usize::from(self.session.link().port) - 1;
+        let until = wanted.back_for.map(|duration| self.session.now.saturating_add_signed(self.nanoseconds(duration)));
+        let mut back = Channel::new(wanted.back, until);
         let Some(tester) = self.testers.get_mut(index) else { return Ok(Vec::new()) };
         let mut partner = Partner::new(wanted.from, wanted.operator, self.session, tester);
         for _ in 0..exchanges {
             let Some(tester) = self.testers.get_mut(index) else { break };
-            partner.exchange(self.session, tester)?;
+            partner.exchange(&mut back, self.session, tester)?;
             let reached = match wanted.until.is_empty() {
                 true => wanted.within.is_none() && partner.operates(self.session, self.tester()),
                 false => self.hold(&wanted.until, before),
@@ -438,7 +455,13 @@ impl<'s, 'd> Engine<'s, 'd> {
         let profile = self.session.profile;
         LIVENESS_SCL_CYCLES * (profile.answer_latency + 1)
             + 2 * profile.watchdog_ns().div_ceil(profile.master_cycle_time_ns)
-            + profile.scl_start_ms * 1_000_000 / profile.master_cycle_time_ns
+            + self.starting_exchanges()
+    }
+
+    /// What the SCL may take to start.
+    fn starting_exchanges(&self) -> u64 {
+        let profile = self.session.profile;
+        profile.scl_start_ms * 1_000_000 / profile.master_cycle_time_ns
     }
 
     fn tester(&self) -> &Tester {
@@ -478,8 +501,14 @@ impl<'s, 'd> Engine<'s, 'd> {
             }
         }
         let from = if running && self.tester().count.is_some() { From::Next } else { From::Start };
-        let wanted =
-            super::case::model::Partner { from, operator: Operator::Acknowledges, until: Vec::new(), within: None };
+        let wanted = super::case::model::Partner {
+            from,
+            operator: Operator::Acknowledges,
+            back: None,
+            back_for: None,
+            until: Vec::new(),
+            within: None,
+        };
         self.partner(&wanted, &Before::default())?;
         Ok(())
     }

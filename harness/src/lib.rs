@@ -4,6 +4,7 @@
 
 pub mod campaign;
 pub mod case;
+pub mod channel;
 pub mod cli;
 pub mod coverage;
 pub mod engine;
@@ -13,6 +14,7 @@ pub mod keeper;
 pub mod ledger;
 pub mod library;
 pub mod link;
+pub mod matrix;
 pub mod oracle;
 pub mod parameterize;
 pub mod partner;

@@ -3,6 +3,7 @@
 use crate::case::{self, Case, Covered, Start, Suite, model::Action, model::Step};
 use crate::coverage::Coverage;
 use crate::ledger::{Class, Ledger};
+use crate::matrix::{self, Matrix};
 use crate::oracle::Tolerances;
 use crate::problem::{Problem, Source, suggestion};
 use crate::profile::Profile;
@@ -20,7 +21,7 @@ fn embedded_sources() -> Vec<Arc<Source>> {
     EMBEDDED.iter().map(source).collect()
 }
 
-/// Suites, start conditions, ledger, tolerances and profiles.
+/// Suites, start conditions, ledger, error matrix, tolerances and profiles.
 #[derive(Debug)]
 pub struct Library {
     /// Suites by name.
@@ -29,6 +30,8 @@ pub struct Library {
     pub starts: Vec<Start>,
     /// Ledger.
     pub ledger: Ledger,
+    /// The error matrix; cases of one's own do without.
+    pub matrix: Option<Matrix>,
     /// Tolerances.
     pub tolerances: Tolerances,
     /// Profiles by name.
@@ -98,6 +101,7 @@ impl Library {
         let mut suites = Vec::new();
         let mut starts = Vec::new();
         let mut ledger = Ledger::default();
+        let mut matrix = None;
         let mut tolerances = None;
         let mut profiles = BTreeMap::new();
         let mut coverage = BTreeMap::new();
@@ -117,19 +121,24 @@ impl Library {
                     coverage.insert(goals.role.to_string(), goals);
                 }),
                 (_, "starts.yaml") => gather(case::starts(source), &mut problems, |found| starts = found),
+                (_, "error-matrix.yaml") => {
+                    gather(Matrix::parse(source), &mut problems, |found| matrix = Some(found));
+                }
                 (_, "tolerances.yaml") => {
                     gather(Tolerances::parse(source), &mut problems, |found| tolerances = Some(found));
                 }
                 _ => {
                     problems.push(Problem::without_place(&source.name, "is in no known place").help(
-                        "known are requirements/, suites/, profiles/, coverage/, starts.yaml and tolerances.yaml",
+                        "known are requirements/, suites/, profiles/, coverage/, starts.yaml, error-matrix.yaml and tolerances.yaml",
                     ))
                 }
             }
         }
+        // Last, so that the first failure told is that of a suite about one thing.
+        suites.sort_by_key(|suite: &Suite| suite.group.as_deref() == Some(matrix::GROUP));
         match tolerances {
             Some(tolerances) if problems.is_empty() => {
-                Ok(Library { suites, starts, ledger, tolerances, profiles, coverage })
+                Ok(Library { suites, starts, ledger, matrix, tolerances, profiles, coverage })
             }
             Some(_) => Err(problems),
             None => {
@@ -210,6 +219,15 @@ impl Library {
                         let message = format!("names an unknown requirement `{id}`");
                         problems.push(Problem::without_place(&place, message).help(suggestion(id, self.ledger.ids())));
                     }
+                }
+            }
+        }
+        match &self.matrix {
+            Some(matrix) => matrix.check(&self.suites, &mut problems),
+            None => {
+                for suite in self.suites.iter().filter(|suite| suite.group.as_deref() == Some(matrix::GROUP)) {
+                    let message = format!("suite `{}` belongs to an error matrix, but there is none", suite.name);
+                    problems.push(Problem::without_place("testcases/error-matrix.yaml", message));
                 }
             }
         }

@@ -1,11 +1,13 @@
 //! One link of the DUT: an FS-Device has one, an FS-Master one for each port. What was seen on it, and its oracle.
 
+use crate::case::model::KEPT;
 use crate::keeper::Keeper;
 use crate::oracle::{App, Mismatch, Oracle, OssdeOracle, Setup};
 use fsct_adapters::{Identity, Line, Mode, Octets, Role, Seen, Service};
 use fsct_protocol::Edition;
 use fsct_protocol::fsp::INDEX_VERIFY;
 use fsct_protocol::spdu::View;
+use std::collections::VecDeque;
 
 /// On-request data that an FS-Master has sent to the Device and that is not answered yet.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -27,6 +29,8 @@ pub struct Link {
     pub oracle: Oracle,
     /// The image presented last.
     pub image: Option<Octets>,
+    /// The images presented before it, the latest first.
+    pub earlier: VecDeque<Option<Octets>>,
     /// What the DUT received last.
     pub sent: Option<Octets>,
     /// When the image last changed.
@@ -77,6 +81,7 @@ impl Link {
             port,
             oracle: Oracle::new(setup),
             image: None,
+            earlier: VecDeque::new(),
             sent: None,
             changed_at: 0,
             app: App::default(),
@@ -179,6 +184,8 @@ impl Link {
     pub fn exchange(&mut self, at: u64, sent: Option<&Octets>, image: Option<Octets>) -> Result<(), Mismatch> {
         if image != self.image {
             self.changed_at = at;
+            self.earlier.truncate(KEPT - 1);
+            self.earlier.push_front(self.image);
         }
         self.image = image;
         self.sent = sent.copied().or(self.sent);
@@ -281,8 +288,6 @@ impl Link {
 
     /// The image presented last, read as an SPDU; `None` when it is none, too short or all zero.
     pub fn answer(&self) -> Option<View<'_>> {
-        let setup = self.oracle.setup();
-        let view = View::new(self.image.as_ref()?.as_slice(), setup.mode, setup.image_pd()).ok()?;
-        (!view.is_all_zero()).then_some(view)
+        self.oracle.setup().view(self.image.as_ref())
     }
 }

@@ -2,13 +2,14 @@
 //! and the operator.
 
 use crate::case::model::{From, Operator};
+use crate::channel::Channel;
 use crate::keeper::Keeper;
 use crate::session::{Session, Stop};
 use crate::tester::Tester;
 use fsct_adapters::{Octets, Pco, Role, Service};
 use fsct_protocol::scl::master::Answer;
 use fsct_protocol::scl::{Master, Var};
-use fsct_protocol::spdu::{OutSpdu, Pd, succ};
+use fsct_protocol::spdu::{OutSpdu, Pd, inv3, succ};
 
 /// A conformant partner.
 pub enum Partner {
@@ -42,7 +43,7 @@ impl Partner {
         let gateway = Gateway { operator, pressed: false, released: 0 };
         match (setup.role, from, tester.answered) {
             (Role::Device, ..) => Partner::Master(VirtualMaster::new(from, operator, session, tester)),
-            (Role::Master, From::Next | From::Zero, Some(answered)) => {
+            (Role::Master, From::Regular | From::Next | From::Zero, Some(answered)) => {
                 let pdin = Pd::new(&tester.pattern(setup.pd_in)).unwrap_or(Pd::safe(setup.pd_in));
                 Partner::Device(Box::new(Keeper::regular(setup, pdin, answered, session.now)), gateway)
             }
@@ -53,18 +54,23 @@ impl Partner {
         }
     }
 
-    /// One exchange, and what the partner makes of it.
+    /// One exchange, and what the partner makes of what reaches it over the way back.
     ///
     /// # Errors
     /// [`Stop`] when the case cannot go on.
-    pub fn exchange(&mut self, session: &mut Session<'_>, tester: &mut Tester) -> Result<(), Stop> {
+    pub fn exchange(&mut self, back: &mut Channel, session: &mut Session<'_>, tester: &mut Tester) -> Result<(), Stop> {
+        if let Some(note) = back.note(session.now) {
+            session.margin.announce(note);
+        }
         match self {
-            Partner::Master(master) => master.exchange(session, tester),
+            Partner::Master(master) => master.exchange(back, session, tester),
             Partner::Device(keeper, gateway) => {
                 gateway.operate(session)?;
                 session.exchange(keeper.octets())?;
-                let link = session.link();
-                keeper.received(session.now, link.image.as_ref(), link.oracle.setup());
+                let answered = keeper.answered();
+                let octets = back
+                    .pass(session.now, session.link(), tester, keeper.octets(), |counter| answered != Some(counter));
+                keeper.received(session.now, octets.as_ref(), session.setup());
                 tester.follow(keeper, session.now);
                 Ok(())
             }
@@ -124,6 +130,7 @@ impl VirtualMaster {
                 master.start();
                 master
             }
+            (From::Regular, Some(count)) => Master::regular(succ(count)),
             (From::Next, Some(count)) => Master::after_fault(succ(count)),
             (From::Zero, _) => Master::after_fault(0),
         };
@@ -132,10 +139,12 @@ impl VirtualMaster {
         partner
     }
 
-    fn exchange(&mut self, session: &mut Session<'_>, tester: &mut Tester) -> Result<(), Stop> {
+    fn exchange(&mut self, back: &mut Channel, session: &mut Session<'_>, tester: &mut Tester) -> Result<(), Stop> {
         session.exchange(self.octets)?;
+        let awaited = inv3(self.master.control().mcount);
+        let octets = back.pass(session.now, session.link(), tester, self.octets, |counter| counter == awaited);
         let setup = session.setup();
-        let answer = session.answer().map(|view| Answer {
+        let answer = setup.view(octets.as_ref()).map(|view| Answer {
             status: view.status(),
             intact: view.signature_matches(setup.reading) && view.port_num() == setup.port.inverted(),
         });
@@ -178,6 +187,7 @@ impl VirtualMaster {
         tester.count = Some(spdu.control.mcount);
         tester.pd = pd;
         tester.octets = self.octets;
+        tester.remember(self.octets);
         tester.first_copy = session.now + session.profile.master_cycle_time_ns;
     }
 }

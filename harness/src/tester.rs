@@ -1,6 +1,6 @@
 //! The lower tester: builds the SPDUs a case asks for, legal and illegal, as FS-Master or as FS-Device.
 
-use crate::case::model::{Corrupt, Count, Data, Exchange, Field, Image, PortNum, Signature};
+use crate::case::model::{Corrupt, Count, Data, Exchange, Field, Image, KEPT, PortNum, Signature};
 use crate::keeper::Keeper;
 use crate::oracle::Setup;
 use fsct_adapters::{Octets, Role};
@@ -9,6 +9,7 @@ use fsct_protocol::crc::{Reading, crc16, crc32, signature};
 use fsct_protocol::spdu::{Pd, Wire, inv3, succ};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng;
+use std::collections::VecDeque;
 
 /// What the tester sent and will count on from.
 pub struct Tester {
@@ -24,13 +25,24 @@ pub struct Tester {
     pub octets: Option<Octets>,
     /// When the first copy of the SPDU sent last went out, in nanoseconds.
     pub first_copy: u64,
+    /// The SPDUs sent, the last one first.
+    sent: VecDeque<Octets>,
 }
 
 impl Tester {
     /// A tester that has sent nothing.
     pub fn new(setup: &Setup, rng: Pcg64Mcg) -> Tester {
         let pd = Pd::safe(setup.sent_pd());
-        Tester { pd, setup: setup.clone(), rng, count: None, answered: None, octets: None, first_copy: 0 }
+        Tester {
+            pd,
+            setup: setup.clone(),
+            rng,
+            count: None,
+            answered: None,
+            octets: None,
+            first_copy: 0,
+            sent: VecDeque::new(),
+        }
     }
 
     /// Forgets what was sent: the DUT has been switched off.
@@ -38,6 +50,22 @@ impl Tester {
         self.count = None;
         self.answered = None;
         self.octets = None;
+        self.sent.clear();
+    }
+
+    /// The SPDU sent this many SPDUs before the last one.
+    pub fn ago(&self, count: usize) -> Option<Octets> {
+        self.sent.get(count).copied()
+    }
+
+    /// Keeps an SPDU for `ago`; a copy of the last one is none.
+    pub fn remember(&mut self, octets: Option<Octets>) {
+        if let Some(octets) = octets
+            && self.sent.front() != Some(&octets)
+        {
+            self.sent.truncate(KEPT - 1);
+            self.sent.push_front(octets);
+        }
     }
 
     /// A virtual FS-Device has taken over: the tester goes on from what it sent.
@@ -46,6 +74,7 @@ impl Tester {
             self.first_copy = now;
         }
         self.octets = keeper.octets();
+        self.remember(self.octets);
         self.pd = keeper.sent();
         self.answered = keeper.answered();
         self.count = self.answered.map(inv3);
@@ -69,6 +98,7 @@ impl Tester {
             Count::Next => mirrored(next),
             Count::Same => self.count.unwrap_or(0),
             Count::Jump(more) => mirrored(jump(more)),
+            Count::Bit(bit) => mirrored(next) ^ 1 << bit,
             Count::Exactly(count) => count,
         };
         match &exchange.image {
@@ -78,10 +108,20 @@ impl Tester {
                 self.octets = None;
                 return (None, "lost".to_owned());
             }
-            Image::Echo => return self.instead(echo.unwrap_or_default(), "the DUT's own answer"),
+            Image::Echo => {
+                // Where the DUT presents nothing, nothing comes back.
+                self.octets = echo;
+                return (echo, "the DUT's own answer".to_owned());
+            }
             Image::Standard => {
                 let octets = self.pattern(self.length());
                 return self.instead(Octets::new(&octets).unwrap_or_default(), "standard process data");
+            }
+            Image::Ago(count) => {
+                return match self.ago(*count) {
+                    Some(octets) => self.instead(octets, &format!("the SPDU sent {count} before the last")),
+                    None => self.build(&Exchange { image: Image::Lost, ..exchange.clone() }, echo, shown),
+                };
             }
             Image::Exactly(octets) => {
                 return self.instead(Octets::new(octets).unwrap_or_default(), "octets of the case");
@@ -121,6 +161,7 @@ impl Tester {
         let mut image = emitted.octets().to_vec();
         image.extend(&exchange.nsr);
         self.octets = Octets::new(&image).or(Octets::new(emitted.octets()));
+        self.remember(self.octets);
         (self.octets, notes.join(", "))
     }
 
@@ -260,6 +301,39 @@ mod tests {
         };
         assert_eq!(raw, 0);
         assert_eq!(signature(mode, Reading::Preset, &secured), 1);
+    }
+
+    /// A tester of an FS-Device that has sent MCount 0 to 3.
+    fn running() -> (Tester, Vec<Octets>) {
+        let mut tester = Tester::new(&crate::channel::tests::setup(), Pcg64Mcg::new(1));
+        let sent = (0..4).filter_map(|_| tester.build(&exchange("{}"), None, None).0).collect();
+        (tester, sent)
+    }
+
+    fn exchange(text: &str) -> Exchange {
+        crate::case::tests::exchange(text)
+    }
+
+    #[test]
+    fn an_earlier_spdu_goes_out_octet_for_octet_and_counts_for_nothing() {
+        let (mut tester, sent) = running();
+        let mut built = |text: &str| tester.build(&exchange(text), None, None).0;
+        assert_eq!(built("{image: 0 ago}").as_ref(), sent.last());
+        assert_eq!(built("{image: 3 ago}").as_ref(), sent.first());
+        assert_eq!(built("{image: 4 ago}"), None, "no such SPDU was sent");
+        let next = built("{}").expect("an SPDU");
+        assert_eq!(next.as_slice()[3] >> 5, 4);
+    }
+
+    #[rstest]
+    #[case("bit 0", 5)]
+    #[case("bit 1", 6)]
+    #[case("bit 2", 0)]
+    fn a_bit_of_the_counter_is_hit_and_the_signature_is_right(#[case] bit: &str, #[case] mcount: u8) {
+        let (mut tester, _) = running();
+        let octets = tester.build(&exchange(&format!("{{MCount: {bit}}}")), None, None).0.expect("an SPDU");
+        let view = fsct_protocol::spdu::View::new(octets.as_slice(), ProtMode::Crc16, 2).expect("its length is right");
+        assert_eq!((view.counter(), view.signature_matches(Reading::Preset)), (mcount, true));
     }
 
     #[test]

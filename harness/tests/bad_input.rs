@@ -2,6 +2,7 @@
 
 use fsct_harness::case;
 use fsct_harness::library::Library;
+use fsct_harness::matrix::Matrix;
 use fsct_harness::problem::{Problem, Source};
 use fsct_harness::profile::Profile;
 use fsct_harness::yaml;
@@ -122,4 +123,46 @@ fn the_embedded_cases_are_sound() {
     let problems = library.check();
     assert!(problems.is_empty(), "{}", told(problems));
     assert_eq!(library.ledger.iter().count(), 1_139, "nothing of the ledger is dropped");
+}
+
+#[test]
+fn a_misspelt_word_of_the_way_back_is_named_with_its_place() {
+    let steps = "      - exchange: {image: 8 ago, MCount: bit 3}\n        expect: {SDset: 1}\n      - partner: {back: corupt}\n      - partner: {back: 0 ago, within: 3 parsecs}\n      - partner: {for: 20 ms}\n";
+    assert_snapshot!(told(problems(&suite("", steps))));
+}
+
+/// The embedded matrix with one text replaced, checked against the embedded suites.
+fn matrix(from: &str, to: &str) -> String {
+    let library = Library::embedded().unwrap_or_else(|problems| panic!("{}", told(problems)));
+    let text = include_str!("../../testcases/error-matrix.yaml");
+    assert!(text.contains(from));
+    let problems = match Matrix::parse(&source(&text.replacen(from, to, 1))) {
+        Err(problems) => problems,
+        Ok(matrix) => {
+            let mut problems = Vec::new();
+            matrix.check(&library.suites, &mut problems);
+            problems
+        }
+    };
+    told(problems)
+}
+
+#[test]
+fn a_hole_in_the_error_matrix_is_named() {
+    assert_snapshot!(matrix("        24: [FSD-1502, FSD-1503]\n", ""));
+}
+
+#[test]
+fn a_case_that_is_not_there_and_one_that_stands_nowhere_are_named() {
+    assert_snapshot!(matrix("21: FSD-1501", "21: FSD-1591"));
+}
+
+#[test]
+fn an_empty_cell_of_the_error_matrix_says_why() {
+    assert_snapshot!(matrix("21: FSD-1501", "21: {}"));
+}
+
+#[test]
+fn a_class_that_the_error_matrix_lacks_is_named() {
+    assert_snapshot!(matrix("    corruption:", "    corrosion:"));
 }

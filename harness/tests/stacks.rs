@@ -31,10 +31,7 @@ fn a_stack_in_c_conforms_as_a_library(#[case] name: &str, #[case] sources: &[&st
 #[rstest]
 #[case::device("device", DEVICE)]
 #[case::master("master", MASTER)]
-fn a_stack_in_c_conforms_as_a_program_and_keeps_to_its_memory(
-    #[case] name: &str,
-    #[case] sources: &[&str],
-) {
+fn a_stack_in_c_conforms_as_a_program_and_keeps_to_its_memory(#[case] name: &str, #[case] sources: &[&str]) {
     let Some(program) = build(Kind::Program, &[CLIENT, sources].concat(), SANITIZED) else { return };
     conforms(&format!("exec:{}", program.display()), &format!("c-exec-{name}"));
 }

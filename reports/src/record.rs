@@ -43,6 +43,9 @@ pub struct Header {
     /// What each machine of the DUTs can be led through beyond single transitions.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub machines: Vec<MachineInfo>,
+    /// The error matrix, one part a role, when cases of it were planned.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub matrix: Vec<MatrixInfo>,
 }
 
 /// What a machine can be led through. Transitions and steps that follow each other are written one behind the other: `T24 T22`.
@@ -68,6 +71,37 @@ pub struct Goal {
     /// What the rows of the machine would allow but its guards rule out, with the reason.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub infeasible: Vec<(String, String)>,
+}
+
+/// The error matrix for one role: which cases show what.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MatrixInfo {
+    /// `device` or `master`.
+    pub role: String,
+    /// Headings of the columns: direction and state.
+    pub columns: Vec<String>,
+    /// One row an error class.
+    pub rows: Vec<MatrixRow>,
+}
+
+/// An error class of the matrix.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MatrixRow {
+    /// Its name.
+    pub class: String,
+    /// One cell a column.
+    pub cells: Vec<MatrixCell>,
+}
+
+/// A cell of the matrix.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MatrixCell {
+    /// Ids of the cases that show it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cases: Vec<String>,
+    /// Why there is none; empty where there are cases.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub none: String,
 }
 
 /// The device under test, in its own words and the words of the command line. Hostile text: escape it.

@@ -16,9 +16,19 @@ mod spdu;
 const BITS: &[(bool, &str)] = &[(false, "0"), (true, "1")];
 const LINKS: &[(Meanwhile, &str)] =
     &[(Meanwhile::Repeat, "repeat"), (Meanwhile::Lost, "lost"), (Meanwhile::Zero, "zero")];
-const FROM_MASTER: &[(From, &str)] = &[(From::Start, "start"), (From::Next, "next"), (From::Zero, "zero")];
+const FROM_MASTER: &[(From, &str)] =
+    &[(From::Start, "start"), (From::Regular, "regular"), (From::Next, "next"), (From::Zero, "zero")];
 const FROM_DEVICE: &[(From, &str)] = &[(From::Start, "start"), (From::Next, "regular")];
 const OPERATORS: &[(Operator, &str)] = &[(Operator::Acknowledges, "acknowledges"), (Operator::Absent, "absent")];
+const BACKS: &[(Back, &str)] = &[
+    (Back::Corrupt, "corrupt"),
+    (Back::Counter, "counter"),
+    (Back::Foreign, "foreign"),
+    (Back::Standard, "standard"),
+    (Back::Echo, "echo"),
+    (Back::Lost, "lost"),
+    (Back::Late, "late"),
+];
 /// The words for the action of a step, and the side they are for.
 const ACTIONS: [(&str, &[Role]); 16] = [
     ("exchange", &[Role::Device, Role::Master]),
@@ -43,6 +53,11 @@ const ACTIONS: [(&str, &[Role]); 16] = [
 pub fn steps(source: &Arc<Source>, role: Role, node: &Node, problems: &mut Vec<Problem>) -> Vec<Step> {
     let items = crate::tree::list(source, node, "`steps`", problems);
     items.iter().filter_map(|item| Decoder { source, role, problems }.step(item)).collect()
+}
+
+/// `N ago`: how many SPDUs or images before the last one.
+fn ago(text: &str) -> Option<usize> {
+    text.strip_suffix(" ago")?.parse().ok().filter(|count| *count < KEPT)
 }
 
 struct Decoder<'a> {
@@ -201,11 +216,33 @@ impl Decoder<'_> {
             .optional_word("from", if self.role == Role::Device { FROM_MASTER } else { FROM_DEVICE })
             .unwrap_or(From::Next);
         let operator = fields.optional_word("operator", OPERATORS).unwrap_or(Operator::Acknowledges);
+        let back = fields.optional("back");
+        let back_for = fields.optional("for");
         let until = fields.get("until");
         let within = fields.optional("within");
         fields.finish(self.problems);
+        if let (None, Some((_, at))) = (&back, &back_for) {
+            self.problem(at, "`for` needs `back`: it says how long the way back is disturbed");
+        }
+        let back = back.and_then(|placed| self.back(placed));
+        let back_for = back_for.and_then(|placed| self.duration(placed));
         let until = until.map(|node| self.expectations(node)).unwrap_or_default();
-        Action::Partner(Partner { from, operator, until, within: self.scl_cycles(within) })
+        let within = match within {
+            Some(placed) if !placed.0.contains("SCL") => self.duration(placed).map(Within::Time),
+            within => self.scl_cycles(within).map(Within::SclCycles),
+        };
+        Action::Partner(Partner { from, operator, back, back_for, until, within })
+    }
+
+    fn back(&mut self, (text, at): Placed) -> Option<Back> {
+        let found = BACKS.iter().find(|(_, word)| *word == text).map(|(back, _)| *back);
+        let found = found.or_else(|| ago(&text).filter(|count| *count > 0).map(Back::Ago));
+        if found.is_none() {
+            let help = suggestion(&text, BACKS.iter().map(|(_, word)| *word).chain(["1 ago"]));
+            let message = format!("`{text}` is nothing that can happen on the way back");
+            self.problems.push(Problem::new(self.source, at, message).help(help));
+        }
+        found
     }
 
     fn acyclic(&mut self, word: &str, node: &Node) -> Option<Action> {

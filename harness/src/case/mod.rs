@@ -301,3 +301,22 @@ impl Case {
         sweep::expand(&self.source, &self.sweep, offers)
     }
 }
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use model::{Action, Exchange};
+
+    /// An exchange with an FS-Device as it stands in a case.
+    pub(crate) fn exchange(text: &str) -> Exchange {
+        let source = Arc::new(Source { name: "my.yaml".into(), text: format!("- exchange: {text}") });
+        let mut problems = Vec::new();
+        let node = yaml::parse(&source).expect("sound YAML");
+        let step = decode::steps(&source, Role::Device, &node, &mut problems).into_iter().next();
+        assert!(problems.is_empty(), "{problems:?}");
+        match step.map(|step| step.action) {
+            Some(Action::Exchange(exchange)) => *exchange,
+            other => panic!("no exchange: {other:?}"),
+        }
+    }
+}

@@ -291,6 +291,8 @@ pub enum Count {
     Same,
     /// As `Next`, counted on by this many more.
     Jump(u8),
+    /// As `Next`, with this bit of the three inverted, 0 the least significant; the signature is made over it.
+    Bit(u8),
     /// This one.
     Exactly(u8),
 }
@@ -381,9 +383,35 @@ pub enum Image {
     Echo,
     /// Standard process data from the seed.
     Standard,
+    /// The SPDU that was sent this many SPDUs before the last one, octet for octet.
+    Ago(usize),
     /// These octets.
     Exactly(Vec<u8>),
 }
+
+/// What a partner receives in place of the SPDU the DUT has made for it.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Back {
+    /// It, with one bit of the signature falsified.
+    Corrupt,
+    /// It, with a counter two further and a signature over it.
+    Counter,
+    /// It, with the PortNum of another port of the same FS-Master and a signature over it.
+    Foreign,
+    /// Standard process data whose octet in the place of the counter reads as the one awaited.
+    Standard,
+    /// What the partner sends itself (loop-back).
+    Echo,
+    /// Nothing.
+    Lost,
+    /// Nothing, and it afterwards.
+    Late,
+    /// The image the DUT presented this many images before it.
+    Ago(usize),
+}
+
+/// Images and SPDUs that are kept for `N ago`.
+pub const KEPT: usize = 8;
 
 /// Time that passes.
 #[derive(Clone, Debug)]
@@ -429,10 +457,23 @@ pub struct Partner {
     pub from: From,
     /// What the operator does.
     pub operator: Operator,
+    /// What is disturbed on the way back to it.
+    pub back: Option<Back>,
+    /// How long it is disturbed; `None`: once, the first SPDU made for it.
+    pub back_for: Option<Duration>,
     /// It goes on until all of these hold; empty: until regular operation.
     pub until: Vec<Expectation>,
-    /// The most SCL cycles; `None`: the bound of the liveness requirement, 8 SCL cycles plus 2 FSP_Watchdog.
-    pub within: Option<u32>,
+    /// The most there is time for; `None`: the bound of the liveness requirement, 8 SCL cycles plus 2 FSP_Watchdog.
+    pub within: Option<Within>,
+}
+
+/// How long something goes on at the most.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Within {
+    /// So many SCL cycles.
+    SclCycles(u32),
+    /// So long.
+    Time(Duration),
 }
 
 /// Where a partner begins.
@@ -440,6 +481,8 @@ pub struct Partner {
 pub enum From {
     /// A new start: T1, or state 21.
     Start,
+    /// An FS-Master in regular operation: the counter goes on (T4).
+    Regular,
     /// An FS-Master after a fault it has seen: the counter goes on (T7). An FS-Device in regular operation.
     Next,
     /// An FS-Master after a timeout it has seen: the counter is 0 (T8, T14).

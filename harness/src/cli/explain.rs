@@ -1,4 +1,4 @@
-//! `fsct explain ID`: what a case, a requirement or a tolerance says, and what hangs on it.
+//! `fsct explain ID`: what a case, a requirement or a tolerance says, and what hangs on it; `fsct explain --matrix`.
 
 use super::{Cases, USAGE, fail, print};
 use crate::library::Library;
@@ -10,7 +10,11 @@ use fsct_protocol::Edition;
 #[derive(clap::Args, Debug)]
 pub struct Args {
     /// FSD-0231, R-11.5.3-09 or A19
-    id: String,
+    #[arg(required_unless_present = "matrix")]
+    id: Option<String>,
+    /// Print the error matrix: error class x state x direction, with the case that shows it
+    #[arg(long, conflicts_with = "id")]
+    matrix: bool,
     #[command(flatten)]
     cases: Cases,
 }
@@ -21,7 +25,15 @@ pub fn run(args: &Args) -> u8 {
         Ok(library) => library,
         Err(code) => return code,
     };
-    let id = args.id.as_str();
+    let Some(id) = args.id.as_deref() else {
+        return match &library.matrix {
+            Some(matrix) => {
+                print(matrix.text());
+                0
+            }
+            None => fail(USAGE, "these cases come without an error matrix"),
+        };
+    };
     if case(&library, id) || requirement(&library, id) || tolerance(&library, id) {
         return 0;
     }

@@ -4,14 +4,15 @@ use super::{Cases, RIG, USAGE, bench, colour, fail, print, show};
 use crate::campaign::{Bench, Judges, Run, dut_info};
 use crate::coverage::Coverage;
 use crate::library::Library;
+use crate::matrix::GROUP;
 use crate::oracle::{Mask, Tolerances};
 use crate::plan::{Plan, Selection, plan, unreached};
 use crate::problem::suggestion;
 use crate::profile::{Profile, default_profile};
 use crate::yaml;
-use fsct_adapters::{Address, Description, DutError};
+use fsct_adapters::{Address, Description, DutError, Role};
 use fsct_protocol::Edition;
-use fsct_reports::record::{CaseRecord, DutInfo, Execution, Footer, Header, SCHEMA, Verdict};
+use fsct_reports::record::{CaseRecord, DutInfo, Execution, Footer, Header, MatrixInfo, SCHEMA, Verdict};
 use fsct_reports::{Journal, Summary, visible};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::collections::BTreeMap;
@@ -172,6 +173,7 @@ fn execute(args: &Args) -> Result<u8, u8> {
             .filter(|goals| candidates.iter().any(|one| one.profile.role == goals.role))
             .map(Coverage::info)
             .collect(),
+        matrix: matrix(&library, &plans),
     };
     let interrupted = Arc::new(AtomicBool::new(false));
     for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
@@ -220,6 +222,13 @@ fn execute(args: &Args) -> Result<u8, u8> {
     Ok(summary.exit_code())
 }
 
+/// The error matrix for the roles whose cases of it are planned.
+fn matrix(library: &Library, plans: &[Plan<'_>]) -> Vec<MatrixInfo> {
+    let cases = plans.iter().flat_map(|plan| &plan.cases).map(|planned| planned.case);
+    let roles: Vec<Role> = cases.filter(|case| case.group.as_deref() == Some(GROUP)).map(|case| case.role).collect();
+    library.matrix.as_ref().map_or_else(Vec::new, |matrix| matrix.info(&roles))
+}
+
 /// Reaches a DUT and finds the profile for its role.
 fn candidate<'a>(
     args: &Args,
@@ -233,7 +242,7 @@ fn candidate<'a>(
         Ok(bench) => bench.description.role,
         Err(error) => {
             eprintln!("fsct: {}", visible(&error.to_string()));
-            profiles.first().map_or(fsct_adapters::Role::Device, |profile| profile.role)
+            profiles.first().map_or(Role::Device, |profile| profile.role)
         }
     };
     let profile = candidate_profile(role, profiles, library)?;
@@ -256,11 +265,7 @@ pub(super) fn given_profiles(names: &[String], library: &Library) -> Result<Vec<
 }
 
 /// The profile a DUT of this role is judged by: the one given, or the default.
-pub(super) fn candidate_profile<'a>(
-    role: fsct_adapters::Role,
-    given: &'a [Profile],
-    library: &'a Library,
-) -> Result<&'a Profile, u8> {
+pub(super) fn candidate_profile<'a>(role: Role, given: &'a [Profile], library: &'a Library) -> Result<&'a Profile, u8> {
     let own = given.iter().find(|profile| profile.role == role);
     own.or_else(|| library.profiles.get(&default_profile(role)))
         .ok_or_else(|| fail(USAGE, format!("there is no profile for a {role}; give one by --profile")))

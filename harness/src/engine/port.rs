@@ -144,6 +144,8 @@ impl Engine<'_, '_> {
                 pulse_at = None;
             }
         }
+        // A wait before any answer counts from here.
+        self.tester_mut().first_copy = self.session.now;
         if connect.until != Until::Time {
             let met = self.reached(connect.until);
             self.checks += 1;

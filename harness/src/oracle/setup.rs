@@ -4,7 +4,7 @@ use super::Mask;
 use super::config::Window;
 use fsct_adapters::{Octets, Role, Service};
 use fsct_protocol::crc::Reading;
-use fsct_protocol::spdu::Port;
+use fsct_protocol::spdu::{Port, View};
 use fsct_protocol::{Edition, ProtMode};
 
 /// What the oracle has to know of bench and product.
@@ -51,6 +51,12 @@ impl Setup {
             Role::Device => self.pd_in,
             Role::Master => self.pd_out,
         }
+    }
+
+    /// An image of the DUT read as an SPDU; `None` when it is none, too short or all zero.
+    pub fn view<'i>(&self, image: Option<&'i Octets>) -> Option<View<'i>> {
+        let view = View::new(image?.as_slice(), self.mode, self.image_pd()).ok()?;
+        (!view.is_all_zero()).then_some(view)
     }
 
     /// FS process data in what the DUT is sent, in octets.

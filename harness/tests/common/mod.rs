@@ -56,6 +56,7 @@ pub fn run_with(
     cases
 }
 
+#[allow(dead_code, reason = "not every test tells it")]
 /// What went wrong, to be read in a failing test.
 pub fn story(cases: &[CaseRecord]) -> String {
     let mut text = String::new();

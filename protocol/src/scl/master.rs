@@ -117,6 +117,17 @@ impl Master {
         master
     }
 
+    /// Waiting in state 5 for the answer to a regular SPDU with this counter, not 0; the SPDU before it has been answered.
+    pub fn regular(mcount: u8) -> Master {
+        let mut master = Master::new();
+        master.vars.set(Var::In, 1);
+        master.vars.set(Var::Out, 1);
+        master.vars.set(Var::Mcount, mcount & 7);
+        master.previous = Some(inv3(if mcount == 1 { 7 } else { mcount.wrapping_sub(1) & 7 }));
+        master.state = State(5);
+        master
+    }
+
     /// T1, T2: the preconditions are fulfilled and the first SPDU is sent.
     pub fn start(&mut self) -> Path {
         self.run(&[Trigger::Start, Trigger::Send])

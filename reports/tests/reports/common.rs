@@ -17,6 +17,7 @@ pub fn header(planned: usize) -> Header {
         not_applicable: vec![("FSD-0999[edition=v1.1]".into(), "the DUT does not serve `app`".into())],
         tolerances: BTreeMap::from([("A19".into(), "T29 read sequentially (tolerated)".into())]),
         machines: Vec::new(),
+        matrix: Vec::new(),
     }
 }
 

@@ -485,3 +485,35 @@ fn ten_thousand_cases_of_two_duts_with_long_requests_are_less_than_five_megabyte
     assert!(html.len() < 5_000_000, "{} octets", html.len());
     assert!(html.contains("Failures (200)") && html.contains("<p>On DUT 2 (Gateway 8)</p>"));
 }
+
+/// The matrix of an FS-Device with one class and two columns.
+fn matrix(cases: &[&str], none: &str) -> Vec<MatrixInfo> {
+    let shown = MatrixCell { cases: cases.iter().map(|id| (*id).to_owned()).collect(), none: String::new() };
+    let empty = MatrixCell { cases: Vec::new(), none: none.to_owned() };
+    let row = MatrixRow { class: "corruption".into(), cells: vec![shown, empty] };
+    vec![MatrixInfo { role: "device".into(), columns: vec!["to DUT".into(), "from DUT".into()], rows: vec![row] }]
+}
+
+#[test]
+fn a_cell_of_the_error_matrix_counts_the_verdicts_of_its_cases() {
+    let mut run = run(vec![passed(1), passed(1), failed(1), mastered(1)]);
+    let id = run.cases[0].id.clone();
+    run.cases[3].id = id.clone();
+    run.header.matrix = matrix(&[&id, "FSD-9999"], "nothing is sent");
+    let html = page("matrix", &run);
+    let cell = format!(r#"<div>{id} <span class="pass">✓ pass × 2</span> <span class="fail">✗ fail × 1</span></div>"#);
+    assert!(html.contains(&cell), "{html}");
+    assert!(html.contains(r#"<div>FSD-9999 <span class="soft">not run</span></div>"#));
+    assert!(html.contains("none, see 1") && html.contains("<li>nothing is sent</li>"));
+}
+
+#[test]
+fn the_error_matrix_stays_in_the_record_and_is_not_shown_where_there_is_none() {
+    let mut run = run(vec![passed(1)]);
+    assert!(!page("no-matrix", &run).contains("Error matrix"));
+    assert!(!serde_json::to_string(&run.header).expect("it is plain").contains("matrix"));
+    run.header.matrix = matrix(&[HOSTILE], HOSTILE);
+    let text = serde_json::to_string(&run.header).expect("it is plain");
+    assert_eq!(serde_json::from_str::<Header>(&text).expect("it was just written"), run.header);
+    assert!(!page("hostile-matrix", &run).contains("<script>"));
+}

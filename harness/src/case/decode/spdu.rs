@@ -124,11 +124,16 @@ impl Decoder<'_> {
             "same" => Some(Count::Same),
             _ => {
                 let jump = text.strip_prefix('+').and_then(|more| more.parse().ok()).map(Count::Jump);
+                let bit =
+                    text.strip_prefix("bit ").and_then(|bit| bit.parse().ok()).filter(|bit| *bit <= 2).map(Count::Bit);
                 let exact = text.parse().ok().filter(|count| *count <= 7).map(Count::Exactly);
-                let found = jump.or(exact);
+                let found = jump.or(bit).or(exact);
                 if found.is_none() {
                     let SpduWords { count, next, .. } = words;
-                    self.problem(&at, format!("`{text}` is no {count}: {next}, same, +1 and so on, or 0 to 7"));
+                    self.problem(
+                        &at,
+                        format!("`{text}` is no {count}: {next}, same, +1 and so on, bit 0 to bit 2, or 0 to 7"),
+                    );
                 }
                 found
             }
@@ -206,7 +211,17 @@ impl Decoder<'_> {
             "lost" => Some(Image::Lost),
             "echo" => Some(Image::Echo),
             "standard" => Some(Image::Standard),
-            _ => self.octets(&text, &at).map(Image::Exactly),
+            _ => match (super::ago(&text), text.strip_suffix(" ago")) {
+                (Some(count), _) => Some(Image::Ago(count)),
+                (None, Some(_)) => {
+                    self.problem(
+                        &at,
+                        format!("`{text}`: SPDUs are kept from `0 ago`, the last one, to `{} ago`", KEPT - 1),
+                    );
+                    None
+                }
+                (None, None) => self.octets(&text, &at).map(Image::Exactly),
+            },
         }
     }
 }
