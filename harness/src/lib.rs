@@ -7,6 +7,7 @@ pub mod case;
 pub mod cli;
 pub mod engine;
 pub mod expect;
+pub mod injection;
 pub mod keeper;
 pub mod ledger;
 pub mod library;

@@ -58,11 +58,33 @@ impl Partner {
     /// # Errors
     /// [`Stop`] when the case cannot go on.
     pub fn exchange(&mut self, session: &mut Session<'_>, tester: &mut Tester) -> Result<(), Stop> {
+        let octets = self.octets();
+        self.exchange_instead(session, tester, octets)
+    }
+
+    /// What the partner presents.
+    pub fn octets(&self) -> Option<Octets> {
         match self {
-            Partner::Master(master) => master.exchange(session, tester),
+            Partner::Master(master) => master.octets,
+            Partner::Device(keeper, _) => keeper.octets(),
+        }
+    }
+
+    /// One exchange in which the DUT receives this, whatever the partner presents; and what the partner makes of the answer.
+    ///
+    /// # Errors
+    /// [`Stop`] when the case cannot go on.
+    pub fn exchange_instead(
+        &mut self,
+        session: &mut Session<'_>,
+        tester: &mut Tester,
+        octets: Option<Octets>,
+    ) -> Result<(), Stop> {
+        match self {
+            Partner::Master(master) => master.exchange(session, tester, octets),
             Partner::Device(keeper, gateway) => {
                 gateway.operate(session)?;
-                session.exchange(keeper.octets())?;
+                session.exchange(octets)?;
                 let link = session.link();
                 keeper.received(session.now, link.image.as_ref(), link.oracle.setup());
                 tester.follow(keeper, session.now);
@@ -132,8 +154,8 @@ impl VirtualMaster {
         partner
     }
 
-    fn exchange(&mut self, session: &mut Session<'_>, tester: &mut Tester) -> Result<(), Stop> {
-        session.exchange(self.octets)?;
+    fn exchange(&mut self, session: &mut Session<'_>, tester: &mut Tester, octets: Option<Octets>) -> Result<(), Stop> {
+        session.exchange(octets)?;
         let setup = session.setup();
         let answer = session.answer().map(|view| Answer {
             status: view.status(),
