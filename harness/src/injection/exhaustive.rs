@@ -267,7 +267,7 @@ impl<'s> Writer<'s> {
         let mut octets = [0; fsct_protocol::spdu::MAX_PD];
         (0..)
             .zip(&mut octets)
-            .for_each(|(place, octet)| *octet = 1 | self.round.wrapping_mul(59).wrapping_add(place * 37));
+            .for_each(|(place, octet)| *octet = 1 | self.round.wrapping_mul(59).wrapping_add(37u8.wrapping_mul(place)));
         Pd::new(&octets[..self.setup.sent_pd()]).unwrap_or(Pd::safe(self.setup.sent_pd()))
     }
 

@@ -134,7 +134,7 @@ impl Target<'_> {
         let reason = outcome.reasons.first();
         let went = match outcome.execution {
             Execution::Ok if outcome.verdict <= Verdict::Remark => Ok(()),
-            Execution::Ok => Err(Halt::not_started(reason)),
+            Execution::Ok => Err(Halt::not_started(reason, answers(&session))),
             Execution::Aborted => Err(Halt::Interrupted),
             _ => Err(Halt::Bench(format!(
                 "the DUT did not reach operation: {}",
@@ -185,6 +185,20 @@ impl Target<'_> {
         };
         Ran { tally, halt, record }
     }
+}
+
+/// Octets from elsewhere as the link carries them: the length of its process data never changes.
+fn fitting(other: &[u8], own: &Octets) -> Option<Octets> {
+    let mut octets = other.to_vec();
+    octets.resize(own.as_slice().len(), 0);
+    Octets::new(&octets)
+}
+
+/// Whether what the DUT presents is an SPDU of its own at all.
+fn answers(session: &Session<'_>) -> bool {
+    let setup = session.setup();
+    let own = if setup.role == Role::Device { setup.port.inverted() } else { setup.port.number() };
+    session.answer().is_some_and(|view| view.signature_matches(setup.reading) && view.port_num() == own)
 }
 
 /// What an action led to, as the oracle followed it.
@@ -358,8 +372,13 @@ impl<'s, 'd> Stage<'s, 'd> {
                 let place = usize::from(*back).min(self.delivered.len().saturating_sub(1));
                 return self.delivered.get(place).copied().or(Some(octets));
             }
-            Action::Insert(digits) => return from_hex(digits).and_then(|octets| Octets::new(&octets)).or(Some(octets)),
-            Action::LoopBack => return self.session.link().image.or(Some(octets)),
+            Action::Insert(digits) => {
+                return from_hex(digits).and_then(|other| fitting(&other, &octets)).or(Some(octets));
+            }
+            Action::LoopBack => {
+                let image = self.session.link().image;
+                return image.and_then(|image| fitting(image.as_slice(), &octets)).or(Some(octets));
+            }
             Action::Sequence(ahead) => {
                 let from_master = setup.role == Role::Device;
                 let count = if from_master { view.counter() } else { inv3(view.counter()) };
