@@ -110,11 +110,10 @@ pub fn run(args: &Args) -> Result<u8, u8> {
             };
             bar.suspend(|| show(&row));
             rows.push(row);
-            for number in before..undetected.len() {
-                let (octets, script, kind) = &undetected[number];
+            for (number, (octets, script, kind)) in (1..).zip(&undetected).skip(before) {
                 bar.suspend(|| {
                     print(format!("undetected: {octets}"));
-                    ground.tell(&target, script, kind, number + 1)
+                    ground.tell(&target, script, kind, number)
                 })?;
             }
             ended = halt;
