@@ -75,7 +75,10 @@ impl Bench {
     }
 
     /// Makes the DUT the variant a case needs, without supply.
-    fn configure(&mut self, variant: Variant) -> Result<(), DutError> {
+    ///
+    /// # Errors
+    /// [`DutError`] when it does not take it.
+    pub fn configure(&mut self, variant: Variant) -> Result<(), DutError> {
         let mut observed = Vec::new();
         let power = self.description.pcos.contains(&Pco::Power);
         let mut stimuli = Vec::new();
@@ -220,27 +223,7 @@ impl Run<'_> {
 
     /// What the oracle of a port is told, ports counted from 0; `None` when the port cannot have a number.
     fn setup(&self, planned: &Planned<'_>, description: &Description, index: u8) -> Option<Setup> {
-        let Variant { edition, mode, pd_out, pd_in } = planned.binding.variant;
-        let profile = self.profile;
-        let port = Port::new(profile.port.number().checked_add(index)?)?;
-        Some(Setup {
-            role: planned.case.role,
-            edition,
-            mode,
-            pd_out: pd_out.into(),
-            pd_in: pd_in.into(),
-            port,
-            reading: profile.reading,
-            cycle_ns: profile.master_cycle_time_ns,
-            watchdog_ns: profile.watchdog_ns(),
-            tick_ns: profile.timer_tick_us * 1_000,
-            margin_ns: profile.margin_ns(),
-            uncertainty_ns: description.clock.uncertainty_ns,
-            latency: profile.answer_latency,
-            scl_start_ns: profile.scl_start_ms * 1_000_000,
-            allowed: self.allowed,
-            app: description.pcos.contains(&Pco::App),
-        })
+        setup(self.profile, self.allowed, description, planned.binding.variant, index)
     }
 
     /// Whether anything a case judges is demanded: only then its own expectations can fail a product.
@@ -392,6 +375,36 @@ fn hash(text: &str) -> u64 {
 
 pub(crate) fn nanoseconds(duration: Duration) -> u64 {
     u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
+}
+
+/// What the oracle of a port is told, ports counted from 0; `None` when the port cannot have a number.
+pub fn setup(
+    profile: &Profile,
+    allowed: Mask,
+    description: &Description,
+    variant: Variant,
+    index: u8,
+) -> Option<Setup> {
+    let Variant { edition, mode, pd_out, pd_in } = variant;
+    let port = Port::new(profile.port.number().checked_add(index)?)?;
+    Some(Setup {
+        role: profile.role,
+        edition,
+        mode,
+        pd_out: pd_out.into(),
+        pd_in: pd_in.into(),
+        port,
+        reading: profile.reading,
+        cycle_ns: profile.master_cycle_time_ns,
+        watchdog_ns: profile.watchdog_ns(),
+        tick_ns: profile.timer_tick_us * 1_000,
+        margin_ns: profile.margin_ns(),
+        uncertainty_ns: description.clock.uncertainty_ns,
+        latency: profile.answer_latency,
+        scl_start_ns: profile.scl_start_ms * 1_000_000,
+        allowed,
+        app: description.pcos.contains(&Pco::App),
+    })
 }
 
 /// What the DUT says of itself, and what was measured of the way to it, for the record.

@@ -1,6 +1,7 @@
 //! Executes one case: start condition, steps, and the liveness check every case ends with.
 
 mod port;
+mod reach;
 
 use crate::case::model::*;
 use crate::channel::Channel;

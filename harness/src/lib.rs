@@ -10,6 +10,7 @@ pub mod coverage;
 pub mod engine;
 pub mod expect;
 pub mod gauntlet;
+pub mod injection;
 pub mod keeper;
 pub mod ledger;
 pub mod library;

@@ -59,14 +59,38 @@ impl Partner {
     /// # Errors
     /// [`Stop`] when the case cannot go on.
     pub fn exchange(&mut self, back: &mut Channel, session: &mut Session<'_>, tester: &mut Tester) -> Result<(), Stop> {
+        let octets = self.octets();
+        self.exchange_instead(back, session, tester, octets)
+    }
+
+    /// What the partner presents.
+    pub fn octets(&self) -> Option<Octets> {
+        match self {
+            Partner::Master(master) => master.octets,
+            Partner::Device(keeper, _) => keeper.octets(),
+        }
+    }
+
+    /// One exchange in which the DUT receives this, whatever the partner presents; and what the partner makes of what reaches it
+    /// over the way back.
+    ///
+    /// # Errors
+    /// [`Stop`] when the case cannot go on.
+    pub fn exchange_instead(
+        &mut self,
+        back: &mut Channel,
+        session: &mut Session<'_>,
+        tester: &mut Tester,
+        octets: Option<Octets>,
+    ) -> Result<(), Stop> {
         if let Some(note) = back.note(session.now) {
             session.margin.announce(note);
         }
         match self {
-            Partner::Master(master) => master.exchange(back, session, tester),
+            Partner::Master(master) => master.exchange(back, session, tester, octets),
             Partner::Device(keeper, gateway) => {
                 gateway.operate(session)?;
-                session.exchange(keeper.octets())?;
+                session.exchange(octets)?;
                 let answered = keeper.answered();
                 let octets = back
                     .pass(session.now, session.link(), tester, keeper.octets(), |counter| answered != Some(counter));
@@ -139,8 +163,14 @@ impl VirtualMaster {
         partner
     }
 
-    fn exchange(&mut self, back: &mut Channel, session: &mut Session<'_>, tester: &mut Tester) -> Result<(), Stop> {
-        session.exchange(self.octets)?;
+    fn exchange(
+        &mut self,
+        back: &mut Channel,
+        session: &mut Session<'_>,
+        tester: &mut Tester,
+        octets: Option<Octets>,
+    ) -> Result<(), Stop> {
+        session.exchange(octets)?;
         let awaited = inv3(self.master.control().mcount);
         let octets = back.pass(session.now, session.link(), tester, self.octets, |counter| counter == awaited);
         let setup = session.setup();

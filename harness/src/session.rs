@@ -1,5 +1,9 @@
 //! One case's hold on the DUT: stimuli go out, observations come in, the oracle sees every exchange.
 
+mod batch;
+
+pub use batch::Item;
+
 use crate::link::Link;
 use crate::oracle::{Mask, Mismatch, Setup};
 use crate::profile::Profile;

@@ -3,6 +3,7 @@
 //! 0 conformant · 1 failures · 2 usage or invalid input · 3 rig or tool error · 4 nothing ran · 5 inconclusive only
 
 mod bench;
+mod campaign;
 mod check;
 mod crc;
 mod doctor;
@@ -51,6 +52,8 @@ enum Command {
     Run(run::Args),
     /// Reach a DUT, say what it is and which suites apply: the first command on a new bench
     Doctor(doctor::Args),
+    /// Inject errors by the million: every corruption of an SPDU, or random faults; failures are shrunk to a few actions
+    Campaign(campaign::Args),
     /// List the cases there are
     List(list::Args),
     /// Check cases, ledger and profiles without a DUT
@@ -85,6 +88,7 @@ pub fn main() -> ExitCode {
     let code = std::panic::catch_unwind(|| match cli.command {
         Command::Run(args) => run::run(&args),
         Command::Doctor(args) => doctor::run(&args),
+        Command::Campaign(args) => campaign::run(&args),
         Command::List(args) => list::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Explain(args) => explain::run(&args),

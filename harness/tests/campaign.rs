@@ -1,0 +1,148 @@
+//! `fsct campaign`: the references pass, mutants are found, shrunk and replayed octet by octet, and a DUT that does nothing
+//! earns no pass.
+
+use assert_cmd::Command;
+use rstest::rstest;
+use std::path::{Path, PathBuf};
+
+/// Exit code, stdout and stderr of `fsct campaign`.
+fn campaign(args: &[&str], out: &Path) -> (i32, String, String) {
+    let mut command = Command::cargo_bin("fsct").expect("the binary is built");
+    let output = command.arg("campaign").args(args).arg("--out").arg(out).output().expect("it runs");
+    let text = |octets: Vec<u8>| String::from_utf8(octets).expect("UTF-8");
+    (output.status.code().unwrap_or(-1), text(output.stdout), text(output.stderr))
+}
+
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("campaign").join(name);
+    let _ = std::fs::remove_dir_all(&folder);
+    folder
+}
+
+fn file(folder: &Path, name: &str) -> String {
+    std::fs::read_to_string(folder.join(name)).expect("it was written")
+}
+
+#[rstest]
+#[case("device", "v1.1")]
+#[case("device", "iec2022")]
+#[case("master", "v1.1")]
+#[case("master", "iec2022")]
+fn the_references_pass_random_faults(#[case] role: &str, #[case] edition: &str) {
+    let dut = format!("inproc:reference-{role}");
+    let args =
+        ["random", "--exchanges", "20000", "--faults", "3000", "--seed", "7", "--edition", edition, "--dut", &dut];
+    let (code, told, errors) = campaign(&args, &folder(&format!("random-{role}-{edition}")));
+    assert_eq!(code, 0, "{told}{errors}");
+    assert!(told.contains("pass: "), "{told}");
+}
+
+#[rstest]
+#[case("device", "4", "1..3")]
+#[case("device", "7", "1..2")]
+#[case("master", "4", "1..3")]
+#[case("master", "7", "1..2")]
+#[case("master", "31", "1")]
+fn the_references_detect_every_corruption(#[case] role: &str, #[case] length: &str, #[case] flips: &str) {
+    let dut = format!("inproc:reference-{role}");
+    let args = ["bits", "--flips", flips, "--length", length, "--dut", &dut];
+    let (code, told, errors) = campaign(&args, &folder(&format!("bits-{role}-{length}")));
+    assert_eq!(code, 0, "{told}{errors}");
+    assert!(told.contains("none undetected"), "{told}");
+}
+
+/// Six bits are the Hamming distance of the CRC-16: some corruptions carry the right signature again, which no receiver can tell.
+#[test]
+fn what_the_signature_cannot_detect_is_no_fault_of_the_dut() {
+    let out = folder("bursts");
+    let (code, told, errors) = campaign(&["bits", "--bursts", "17", "--length", "4", "--mode", "crc16"], &out);
+    assert_eq!(code, 0, "{told}{errors}");
+    assert!(told.contains("carry the right signature again"), "{told}");
+    assert!(file(&out, "campaign.json").contains("\"failed\": 0"));
+}
+
+#[rstest]
+#[case("reference-device?mutant=sd-cycles-2")]
+#[case("reference-device?mutant=counter-check-missing")]
+#[case("reference-device?mutant=watchdog-doubled")]
+#[case("reference-master?mutant=counter-7-to-0")]
+fn a_failure_is_shrunk_and_its_replay_gives_the_same_record(#[case] mutant: &str) {
+    let dut = format!("inproc:{mutant}");
+    let out = folder(&mutant.replace(['?', '='], "-"));
+    let (code, told, errors) = campaign(&["random", "--exchanges", "20000", "--faults", "2000", "--dut", &dut], &out);
+    assert_eq!(code, 1, "{told}{errors}");
+    assert!(told.contains("  replay   fsct campaign replay "), "{told}");
+    let list = out.join("actions.jsonl");
+    assert!(file(&out, "actions.jsonl").lines().count() <= 6, "a head and five actions at the most: {told}");
+    let list = list.to_str().expect("UTF-8");
+    let again = out.join("again");
+    let (code, told, errors) = campaign(&["replay", list, "--dut", &dut], &again);
+    assert_eq!(code, 1, "{told}{errors}");
+    assert_eq!(file(&out, "failure.json"), file(&again, "failure.json"));
+    let good = if mutant.contains("device") { "inproc:reference-device" } else { "inproc:reference-master" };
+    let (code, told, errors) = campaign(&["replay", list, "--dut", good], &again);
+    assert_eq!(code, 0, "{told}{errors}");
+}
+
+#[test]
+fn a_corruption_that_is_not_reported_is_told_with_its_octets_and_a_replay() {
+    let out = folder("d-comm-err");
+    let dut = "inproc:reference-device?mutant=d-comm-err-never-reported";
+    let (code, told, errors) = campaign(&["bits", "--flips", "1", "--length", "4", "--dut", dut], &out);
+    assert_eq!(code, 1, "{told}{errors}");
+    assert!(told.contains("undetected: "), "{told}");
+    let list = out.join("actions.jsonl");
+    let (code, told, errors) = campaign(&["replay", list.to_str().expect("UTF-8"), "--dut", dut], &out.join("again"));
+    assert_eq!(code, 1, "{told}{errors}");
+    assert_eq!(file(&out, "failure.json"), file(&out.join("again"), "failure.json"));
+}
+
+#[rstest]
+#[case("null-device")]
+#[case("echo-device")]
+#[case("null-master")]
+#[case("echo-master")]
+#[case("constant-master")]
+fn a_dut_that_never_operates_earns_no_pass(#[case] name: &str, #[values("random", "bits")] what: &str) {
+    let dut = format!("inproc:{name}");
+    let (code, told, errors) = campaign(&[what, "--dut", &dut], &folder(&format!("{name}-{what}")));
+    assert!(matches!(code, 3 | 5), "{code}: {told}{errors}");
+    assert!(!told.contains("pass"), "{told}");
+    assert_eq!(errors.lines().count(), 1, "{errors}");
+}
+
+/// It presents a good SPDU, the wrong one: that is a failure of the product already at the start.
+#[rstest]
+fn a_device_that_repeats_one_spdu_fails(#[values("random", "bits")] what: &str) {
+    let (code, told, errors) =
+        campaign(&[what, "--dut", "inproc:constant-device"], &folder(&format!("constant-device-{what}")));
+    assert_eq!(code, 1, "{told}{errors}");
+    assert!(!told.contains("pass"), "{told}");
+}
+
+#[test]
+fn one_seed_gives_one_result() {
+    let run = |name: &str, seed: &str| {
+        let out = folder(name);
+        let args = ["random", "--exchanges", "5000", "--faults", "700", "--seed", seed];
+        let (code, told, errors) = campaign(&args, &out);
+        assert_eq!(code, 0, "{told}{errors}");
+        (told, file(&out, "campaign.json"))
+    };
+    assert_eq!(run("seed-1", "42"), run("seed-2", "42"));
+    assert_ne!(run("seed-3", "42"), run("seed-4", "43"));
+}
+
+#[rstest]
+#[case(&["bits", "--flips", "0"], 2)]
+#[case(&["bits", "--flips", "3..9"], 2)]
+#[case(&["bits", "--length", "99"], 4)]
+#[case(&["random", "--pd", "77"], 4)]
+#[case(&["random", "--faults", "0", "--exchanges", "1000"], 5)]
+#[case(&["random", "--dut", "inproc:no-such"], 2)]
+#[case(&["random", "--dut", "tcp://127.0.0.1:1"], 3)]
+#[case(&["replay", "no/such/file"], 2)]
+fn exit_codes_are_those_of_every_command(#[case] args: &[&str], #[case] expected: i32) {
+    let (code, told, errors) = campaign(args, &folder(&format!("codes-{}", args.join("-").replace(['/', ':'], "-"))));
+    assert_eq!(code, expected, "{told}{errors}");
+}
