@@ -164,7 +164,11 @@ impl<M: Machine, S: Snapshot> Config<M, S> {
     ) -> bool {
         let oldest = self.oldest(exchange, latency);
         let seen = |from: usize, explains: &dyn Fn(&S) -> Option<Mask>| {
-            (from.max(oldest)..self.count).find_map(|index| Some((index, explains(&self.snapshots[index])?)))
+            let mut found = (from.max(oldest)..self.count).filter_map(|at| Some((at, explains(&self.snapshots[at])?)));
+            let (index, used) = found.next()?;
+            // A tolerance counts as used where nothing else explains what is seen.
+            let plain = used.is_empty() || found.any(|(_, used)| used.is_empty());
+            Some((index, if plain { Mask::NONE } else { used }))
         };
         let Some((shown, used)) = seen(self.shown, &link) else { return false };
         let Some((reported, other)) = seen(self.reported, &app) else { return false };
