@@ -1,0 +1,225 @@
+//! What a case expects to see, and where.
+
+use fsct_adapters::{Mode, Role};
+
+/// One thing to be seen.
+#[derive(Clone, Debug)]
+pub struct Expectation {
+    /// Where to look.
+    pub key: Key,
+    /// What to see.
+    pub value: Expected,
+    /// The value as written.
+    pub text: String,
+}
+
+/// Where to look.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Key {
+    /// Counter of the answer.
+    DcountI,
+    /// SDset of the answer.
+    SdSet,
+    /// DCommErr of the answer.
+    DcommErr,
+    /// DTimeout of the answer.
+    Dtimeout,
+    /// Process data of the answer.
+    Pdin,
+    /// Counter of the SPDU of an FS-Master.
+    Mcount,
+    /// setSD of the SPDU.
+    SetSd,
+    /// ChFAckReq of the SPDU.
+    ChFAckReq,
+    /// Process data of the SPDU.
+    Pdout,
+    /// PortNum of the SPDU presented.
+    PortNum,
+    /// The reserved bits of its status or control octet.
+    Reserved,
+    /// The image as a whole.
+    Image,
+    /// What follows the SPDU in it.
+    Nsr,
+    /// Service PDout_D.
+    PdoutD,
+    /// Service setSD_DC.
+    SetSdDc,
+    /// Service ChFAckReq_DC.
+    ChFAckReqDc,
+    /// Service PDin_M.
+    PdinM,
+    /// Service SDset_S.
+    SdsetS,
+    /// Service ChFAckReq_S.
+    ChFAckReqS,
+    /// Service FAULTS_S.
+    FaultsS,
+    /// Qualifier of the process data.
+    Qualifier,
+    /// Mode an FS-Master commands.
+    Mode,
+    /// L+ of a port.
+    PortPower,
+    /// Wake-up pulses in this step.
+    WakeUp,
+    /// What was written to 0x4202 in this step.
+    Record,
+    /// Answer to a read or write.
+    Reply,
+    /// Result of an SMI request.
+    Result,
+    /// RefArgBlockID of the result.
+    Reference,
+    /// ArgBlockLength of the result.
+    Length,
+    /// The ArgBlock of the result as a whole.
+    Block,
+    /// A field of it.
+    Field(&'static str),
+    /// EventCode seen in this step.
+    Event,
+}
+
+const DEVICE: &[Role] = &[Role::Device];
+const MASTER: &[Role] = &[Role::Master];
+const BOTH: &[Role] = &[Role::Device, Role::Master];
+
+impl Key {
+    /// All keys as written in cases, and the side they are for; fields of ArgBlocks are `block.` and their name.
+    pub const ALL: [(Key, &'static str, &'static [Role]); 31] = [
+        (Key::DcountI, "DCount_i", DEVICE),
+        (Key::SdSet, "SDset", DEVICE),
+        (Key::DcommErr, "DCommErr", DEVICE),
+        (Key::Dtimeout, "DTimeout", DEVICE),
+        (Key::Pdin, "PDin", DEVICE),
+        (Key::Mcount, "MCount", MASTER),
+        (Key::SetSd, "setSD", MASTER),
+        (Key::ChFAckReq, "ChFAckReq", MASTER),
+        (Key::Pdout, "PDout", MASTER),
+        (Key::PortNum, "PortNum", BOTH),
+        (Key::Reserved, "reserved", BOTH),
+        (Key::Image, "image", BOTH),
+        (Key::Nsr, "NSR", BOTH),
+        (Key::PdoutD, "app.PDout_D", DEVICE),
+        (Key::SetSdDc, "app.setSD_DC", DEVICE),
+        (Key::ChFAckReqDc, "app.ChFAckReq_DC", DEVICE),
+        (Key::PdinM, "app.PDin_M", MASTER),
+        (Key::SdsetS, "app.SDset_S", MASTER),
+        (Key::ChFAckReqS, "app.ChFAckReq_S", MASTER),
+        (Key::FaultsS, "app.FAULTS_S", MASTER),
+        (Key::Qualifier, "app.qualifier", MASTER),
+        (Key::Mode, "mode", MASTER),
+        (Key::PortPower, "L+", MASTER),
+        (Key::WakeUp, "wake-up", MASTER),
+        (Key::Record, "record", MASTER),
+        (Key::Reply, "reply", DEVICE),
+        (Key::Result, "result", MASTER),
+        (Key::Reference, "RefArgBlockID", MASTER),
+        (Key::Length, "ArgBlockLength", MASTER),
+        (Key::Block, "block", MASTER),
+        (Key::Event, "event", BOTH),
+    ];
+
+    /// As written in cases; a field of an ArgBlock by its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Key::Field(name) => name,
+            _ => Key::ALL.iter().find(|entry| entry.0 == self).map_or("", |entry| entry.1),
+        }
+    }
+
+    /// Whether the oracle, which knows the tolerances in use, judges the same.
+    pub const fn is_the_oracles(self) -> bool {
+        !matches!(
+            self,
+            Key::Reply
+                | Key::Event
+                | Key::Nsr
+                | Key::Mode
+                | Key::PortPower
+                | Key::WakeUp
+                | Key::Record
+                | Key::Result
+                | Key::Reference
+                | Key::Length
+                | Key::Block
+                | Key::Field(_)
+        )
+    }
+
+    /// Clause that says what is to be seen there.
+    pub fn clause(self) -> &'static str {
+        match self {
+            Key::DcountI => "11.4.6 Table 33",
+            Key::SdSet | Key::DcommErr | Key::Dtimeout => "11.4.6 Table 32, 11.5.3 Table 40",
+            Key::Pdin => "11.3.3 Table 29",
+            Key::Mcount | Key::SetSd | Key::ChFAckReq => "11.4.6 Table 31, 11.5.2 Table 38",
+            Key::Pdout => "11.3.2 Table 28",
+            Key::PortNum => "11.4.5",
+            Key::Reserved => "11.4.6 Tables 31 and 32",
+            Key::Image => "11.4.7, 11.5",
+            Key::Nsr => "10.5, 9.1.2",
+            Key::PdoutD | Key::SetSdDc | Key::ChFAckReqDc => "11.3.3 Table 29",
+            Key::PdinM | Key::SdsetS | Key::ChFAckReqS | Key::FaultsS => "11.3.2 Table 28",
+            Key::Qualifier => "11.11.4 Table 42",
+            Key::Mode | Key::PortPower | Key::WakeUp => "7.2 Table 10",
+            Key::Record => "10.4.3.6, A.2.10",
+            Key::Reply => "A.1 Table A.1",
+            Key::Result | Key::Reference | Key::Length => "10.2",
+            Key::Block | Key::Field(_) => "10.3",
+            Key::Event => "Annex B",
+        }
+    }
+}
+
+/// What to see.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Expected {
+    /// 0 or 1, a counter, an EventCode or ErrorType.
+    Number(u32),
+    /// The mirror of the counter sent last.
+    Mirror,
+    /// The MCount after the one before the step.
+    Next,
+    /// As it was before the step.
+    Unchanged,
+    /// The value given by the other side: PDout or PDin sent last, PDin_D or PDout_M set last.
+    Live,
+    /// All octets 0.
+    Safe,
+    /// An SPDU with right signature.
+    Answer,
+    /// A write carried out.
+    Written,
+    /// A read or write refused, whatever the ErrorType.
+    Refused,
+    /// These octets.
+    Octets(Vec<u8>),
+    /// So many octets, whichever.
+    Count(usize),
+    /// A mode.
+    Mode(Mode),
+    /// What was configured.
+    Configured,
+    /// What stands in the images of both directions.
+    Snapshot,
+    /// The length of what came.
+    Right,
+    /// Nothing.
+    None,
+    /// One of these results.
+    Results(Vec<Outcome>),
+}
+
+/// The result of a service.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// Result(+).
+    Positive,
+    /// Result(-), whatever the error.
+    Negative,
+    /// Result(-) with this error.
+    Error(u16),
+}
