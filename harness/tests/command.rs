@@ -8,11 +8,12 @@ use std::io::{Read, Write};
 use std::net::TcpListener;
 
 #[test]
-fn the_first_command_judges_the_reference_device() {
+fn the_first_command_judges_the_references_and_says_what_comes_next() {
     let folder = Folder::new("first");
     let run = fsct(&["run", "--out", &folder.out()]);
     assert_eq!(run.code, 0, "{run:?}");
     assert!(run.out.contains("conformant") && run.out.contains("every transition taken"), "{}", run.out);
+    assert!(run.out.trim_end().ends_with("fsct doctor --dut URL, then fsct run --dut URL"), "{}", run.out);
     let summary: serde_json::Value = serde_json::from_str(&folder.text("summary.json")).expect("JSON");
     for key in ["cases", "verdicts", "execution", "transitions", "tolerances", "seed", "dut"] {
         assert!(summary.get(key).is_some(), "summary.json has no `{key}`");

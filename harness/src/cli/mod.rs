@@ -32,7 +32,7 @@ pub const RIG: u8 = 3;
 /// Exit code when nothing ran.
 pub const NOTHING_RAN: u8 = 4;
 
-/// Conformance tests for IO-Link Safety: judges FS-Devices against the standard, case by case, with the clause and the
+/// Conformance tests for IO-Link Safety: judges FS-Devices and FS-Masters against the standard, case by case, with the clause and the
 /// octets behind every verdict.
 #[derive(Parser)]
 #[command(
@@ -48,7 +48,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Judge a DUT; without --dut the embedded reference FS-Device
+    /// Judge a DUT; without --dut the embedded reference FS-Device and FS-Master
     Run(run::Args),
     /// Reach a DUT, say what it is and which suites apply: the first command on a new bench
     Doctor(doctor::Args),
@@ -60,7 +60,7 @@ enum Command {
     Check(check::Args),
     /// Explain a case, a requirement or a tolerance
     Explain(explain::Args),
-    /// Serve the reference FS-Device on a socket or on stdin and stdout
+    /// Serve the reference FS-Device or FS-Master on a socket, a pseudo-terminal, or stdin and stdout
     Simulate(simulate::Args),
     /// Render reports from a record once more
     Report(report::Args),

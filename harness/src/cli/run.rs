@@ -475,4 +475,7 @@ fn conclude(args: &Args, plans: &[Plan<'_>], summary: &Summary, interrupted: boo
         print("stopped by the user: the record is valid and partial");
     }
     print(format!("report: {}", args.out.join("report.html").display()));
+    if args.dut.is_empty() {
+        print("judged was what this program carries; your own next: fsct doctor --dut URL, then fsct run --dut URL");
+    }
 }
