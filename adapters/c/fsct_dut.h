@@ -165,6 +165,7 @@ FSCT_EXPORT const struct fsct_dut *fsct_dut(void);
 
 enum fsct_service {
     FSCT_PDin_D = 1, FSCT_SDset_DS = 2, FSCT_PDout_D = 3, FSCT_setSD_DC = 4, FSCT_ChFAckReq_DC = 5, FSCT_SCL_Fault = 6,
+    FSCT_OSSDe_demand = 7,
     FSCT_PDout_M = 17, FSCT_setSD_C = 18, FSCT_ChFAck_C = 19, FSCT_PDin_M = 20, FSCT_SDset_S = 21,
     FSCT_ChFAckReq_S = 22, FSCT_FAULTS_S = 23, FSCT_qualifier = 24, FSCT_FSCP_Authenticity = 25
 };

@@ -75,6 +75,7 @@ class Service(IntEnum):
     setSD_DC = 4
     ChFAckReq_DC = 5
     SCL_Fault = 6
+    OSSDe_demand = 7
     PDout_M = 17
     setSD_C = 18
     ChFAck_C = 19

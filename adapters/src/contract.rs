@@ -340,6 +340,8 @@ pub enum Service {
     ChfackreqDc,
     /// FS-Device output: fault found by the SCL.
     SclFault,
+    /// FS-Device input: the safety function is demanded, so that OSSDe outputs switch off (5.3.3).
+    OssdeDemand,
     /// FS-Master input: process data to send.
     PdoutM,
     /// FS-Master input: force safe data.
@@ -363,13 +365,14 @@ pub enum Service {
 
 impl Service {
     /// All services with their numbers in `PROTOCOL.md` and the standard's spelling.
-    pub const ALL: [(Service, u8, &'static str); 15] = [
+    pub const ALL: [(Service, u8, &'static str); 16] = [
         (Service::PdinD, 1, "PDin_D"),
         (Service::SdsetDs, 2, "SDset_DS"),
         (Service::PdoutD, 3, "PDout_D"),
         (Service::SetsdDc, 4, "setSD_DC"),
         (Service::ChfackreqDc, 5, "ChFAckReq_DC"),
         (Service::SclFault, 6, "SCL_Fault"),
+        (Service::OssdeDemand, 7, "OSSDe_demand"),
         (Service::PdoutM, 17, "PDout_M"),
         (Service::SetsdC, 18, "setSD_C"),
         (Service::ChfackC, 19, "ChFAck_C"),

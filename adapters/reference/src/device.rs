@@ -5,12 +5,13 @@
 //! else. With both clocks an expiry of DTimer takes effect at the instant it was due, and before anything else that
 //! happens at that instant.
 
+use crate::lines::Lines;
 use crate::parameters::{Parameters, Verified, Written, error_type, event_code};
 use crate::scl::{Config, Inputs, Outputs, Scl};
 use crate::{Mutant, Options};
 use fsct_adapters::{
-    Clock, ClockKind, Description, Dut, DutError, Observation, Octets, Offer, Pco, Role, Seen, Service, Stimulus,
-    Variant,
+    Clock, ClockKind, Description, Dut, DutError, Line, Mode, Observation, Octets, Offer, Pco, Role, Seen, Service,
+    Stimulus, Variant,
 };
 use fsct_protocol::spdu::{Pd, Port};
 use fsct_protocol::{Edition, ProtMode};
@@ -39,6 +40,8 @@ pub struct FsDevice {
     session: Option<Session>,
     /// What was before the power was switched off; only a mutant looks at it.
     before: Option<Session>,
+    /// When the power was switched off, since the last `Configure`.
+    off_since: Option<u64>,
     now: u64,
     /// Where the real clock began; `None` with a virtual clock.
     began: Option<Instant>,
@@ -47,6 +50,7 @@ pub struct FsDevice {
 /// What does not survive a power cycle.
 #[derive(Debug)]
 struct Session {
+    lines: Lines,
     /// `None` until FSP_VerifyRecord was found as stored.
     scl: Option<Scl>,
     /// What a mutant keeps over a power cycle.
@@ -70,6 +74,7 @@ impl FsDevice {
             parameters: Parameters::factory(DEFAULT_VARIANT, options.mutant),
             session: None,
             before: None,
+            off_since: None,
             now: 0,
             began: (options.clock == ClockKind::Real).then(Instant::now),
         }
@@ -88,17 +93,19 @@ impl FsDevice {
         match stimulus {
             Stimulus::Configure(variant) => self.configure(*variant, seen),
             Stimulus::Power(true) => self.power_on(seen),
-            Stimulus::Power(false) => self.power_off(),
+            Stimulus::Power(false) => self.power_off(seen),
             Stimulus::Exchange { port: PORT, octets } => self.exchange(octets.as_ref(), seen),
             Stimulus::Exchange { port, .. } => {
                 seen.push(Seen::Unsupported);
                 seen.push(Seen::Image { port: *port, octets: None });
             }
+            Stimulus::Drive { port: PORT, line: Line::WakeUp, level: true } => self.wake_up(seen),
             Stimulus::Read { index, subindex } => seen.push(match self.read(*index, *subindex) {
                 Ok(value) => Seen::Value(value),
                 Err(error) => Seen::Refused { error },
             }),
             Stimulus::Write { index, subindex, data } => self.write(*index, *subindex, data, seen),
+            Stimulus::Set { port: PORT, service: Service::OssdeDemand, value } => self.demand(value.is_set(), seen),
             Stimulus::Set { port: PORT, service, value } if self.set(*service, value) => {}
             Stimulus::Advance { ns } if self.began.is_none() => self.advance_to(self.now.saturating_add(*ns), seen),
             Stimulus::Set { .. } | Stimulus::Advance { .. } | Stimulus::Other { .. } => seen.push(Seen::Unsupported),
@@ -117,13 +124,18 @@ impl FsDevice {
         self.variant = variant;
         self.parameters = Parameters::factory(variant, self.options.mutant);
         self.before = None;
+        self.off_since = None;
     }
 
     fn power_on(&mut self, seen: &mut Sink<'_>) {
         if self.session.is_some() {
             return;
         }
-        let mut session = Session::new(self.variant, self.options);
+        let off_ns = self.off_since.map(|since| self.now - since);
+        let pulse_ns = u64::from(self.options.pulse_us) * 1_000;
+        let lines = Lines::power_on(self.variant.edition, pulse_ns, self.options.mutant, self.now, off_ns);
+        seen.push_line(Line::Power, true);
+        let mut session = Session::new(self.variant, self.options, lines);
         match (self.options.mutant, self.before.take()) {
             (Some(Mutant::PdoutAtPowerOn), Some(before)) => session.outputs.pd_out = before.outputs.pd_out,
             (Some(Mutant::SclSurvivesPowerOff), Some(before)) => session.kept = before.scl.or(before.kept),
@@ -138,15 +150,22 @@ impl FsDevice {
         self.session = Some(session);
     }
 
-    fn power_off(&mut self) {
+    fn power_off(&mut self, seen: &mut Sink<'_>) {
         self.before = self.session.take();
+        if let Some(session) = &self.before {
+            let (cq, iq) = session.lines.levels();
+            cq.then(|| seen.push_line(Line::Cq, false));
+            iq.then(|| seen.push_line(Line::Iq, false));
+            seen.push_line(Line::Power, false);
+            self.off_since = Some(self.now);
+        }
         if self.options.mutant == Some(Mutant::BlocksLostAtPowerOff) {
             self.parameters = Parameters::factory(self.variant, self.options.mutant);
         }
     }
 
     fn exchange(&mut self, received: Option<&Octets>, seen: &mut Sink<'_>) {
-        let octets = self.session.as_mut().map(|session| {
+        let octets = awake(&mut self.session).map(|session| {
             if !session.operate {
                 session.operate = true;
                 if self.variant.edition == Edition::Iec2022 && !session.record_received {
@@ -158,15 +177,24 @@ impl FsDevice {
         seen.push(Seen::Image { port: PORT, octets });
     }
 
-    fn read(&self, index: u16, subindex: u8) -> Result<Vec<u8>, u16> {
-        if self.session.is_none() {
+    /// A pulse on C/Q by which the tester asks for communication.
+    fn wake_up(&mut self, seen: &mut Sink<'_>) {
+        let Some(session) = &mut self.session else { return seen.push(Seen::Unsupported) };
+        seen.push_line(Line::WakeUp, true);
+        if session.lines.wake_up(self.now) {
+            seen.push(Seen::Mode { port: PORT, mode: Mode::Startup });
+        }
+    }
+
+    fn read(&mut self, index: u16, subindex: u8) -> Result<Vec<u8>, u16> {
+        if awake(&mut self.session).is_none() {
             return Err(error_type::COM_ERR);
         }
         self.parameters.read(index, subindex)
     }
 
     fn write(&mut self, index: u16, subindex: u8, data: &[u8], seen: &mut Sink<'_>) {
-        let Some(session) = &mut self.session else {
+        let Some(session) = awake(&mut self.session) else {
             return seen.push(Seen::Refused { error: error_type::COM_ERR });
         };
         let written = match self.parameters.write(index, subindex, data, session.operate) {
@@ -206,8 +234,16 @@ impl FsDevice {
         }
     }
 
+    /// The safety function of the technology is demanded in OSSDe operation.
+    fn demand(&mut self, demand: bool, seen: &mut Sink<'_>) {
+        let Some(session) = &mut self.session else { return seen.push(Seen::Unsupported) };
+        session.lines.demand(self.now, demand);
+        session.drive(self.now, seen);
+    }
+
     fn advance_to(&mut self, now: u64, seen: &mut Sink<'_>) {
         if let Some(session) = &mut self.session {
+            session.drive(now, seen);
             session.expire(now, seen);
         }
         self.now = now;
@@ -229,8 +265,9 @@ impl Dut for FsDevice {
 }
 
 impl Session {
-    fn new(variant: Variant, options: Options) -> Session {
+    fn new(variant: Variant, options: Options, lines: Lines) -> Session {
         Session {
+            lines,
             scl: None,
             kept: None,
             record_received: false,
@@ -254,6 +291,14 @@ impl Session {
         let image = scl.answer().and_then(Octets::new).unwrap_or(self.images.silent);
         self.report_changes(seen);
         self.images.pass(image)
+    }
+
+    /// Edges that are due by `now`.
+    fn drive(&mut self, now: u64, seen: &mut Sink<'_>) {
+        while let Some((at, line, level)) = self.lines.due(now) {
+            seen.at = at;
+            seen.push_line(line, level);
+        }
     }
 
     fn expire(&mut self, now: u64, seen: &mut Sink<'_>) {
@@ -331,9 +376,18 @@ impl Sink<'_> {
         self.push(Seen::Service { port: PORT, service, value });
     }
 
+    fn push_line(&mut self, line: Line, level: bool) {
+        self.push(Seen::Line { port: PORT, line, level });
+    }
+
     fn push_error(&mut self, code: u16) {
         self.push(Seen::Event { code, qualifier: ERROR_APPEARS });
     }
+}
+
+/// The session of a device that communicates.
+fn awake(session: &mut Option<Session>) -> Option<&mut Session> {
+    session.as_mut().and_then(|session| session.lines.answers().then_some(session))
 }
 
 /// FSP parameterization of the SCL. This device is ready as soon as its parameters are: T20 follows at once.
@@ -354,7 +408,7 @@ pub(crate) fn describe(product: &str, clock: Clock) -> Description {
     Description {
         role: Role::Device,
         ports: 1,
-        pcos: vec![Pco::Power, Pco::Link, Pco::Acyclic, Pco::App, Pco::Clock],
+        pcos: vec![Pco::Power, Pco::Link, Pco::Acyclic, Pco::App, Pco::Line, Pco::Clock],
         offers: offers().to_vec(),
         clock,
         vendor: "fsct".to_owned(),

@@ -6,6 +6,7 @@
 mod catalogue;
 mod dead;
 mod device;
+mod lines;
 mod master;
 mod mutant;
 mod options;

@@ -242,6 +242,8 @@ catalogue! {
             "An SPDU of all zeros restarts DTimer."
         WatchdogEarly "watchdog-early", "11.5.5":
             "DTimer expires one millisecond early."
+        WatchdogOneCycleLate "watchdog-1-cycle-late", "11.5.5":
+            "DTimer expires one millisecond late."
         WatchdogLate "watchdog-late", "11.5.5":
             "DTimer expires five milliseconds late."
         WatchdogOctetsSwapped "watchdog-octets-swapped", "11.5.5, A.2.6":
@@ -296,5 +298,37 @@ catalogue! {
             "FSP_TimeToReady can be written."
         AuthenticityReadReversed "authenticity-read-reversed", "A.1 Table A.1":
             "FSP_Authenticity_1 is read back least significant octet first."
+
+        // Lines without communication
+        ReadyPulseShort "ready-pulse-499-us", "5.4":
+            "The Ready pulse is 499 us wide."
+        ReadyPulseLong "ready-pulse-1001-us", "5.4":
+            "The Ready pulse is 1001 us wide."
+        ReadyPulseLate "ready-pulse-after-5-s", "5.4":
+            "The Ready pulse comes 5.001 s after power-on."
+        ReadyPulseOnBothPins "ready-pulse-on-pin-2", "5.3.3":
+            "The Ready pulse comes on I/Q as well."
+        NoReadyPulse "no-ready-pulse", "7.3":
+            "There is no Ready pulse."
+        SecondReadyPulse "second-ready-pulse", "7.3":
+            "A short second pulse follows the Ready pulse."
+        OnInSelfTest "on-in-self-test", "5.3.3":
+            "I/Q is on for a millisecond in the self-test."
+        WakeUpLate "ready-for-wake-up-after-51-us", "5.4":
+            "The device is ready for the wake-up 51 us after the Ready pulse."
+        OssdeEarly "ossde-early", "5.4":
+            "OSSDe operation begins 699 us (v1.1) or 1.0 s (iec2022) after the Ready pulse."
+        OssdeNever "ossde-never", "5.3.3":
+            "Without a wake-up there is no OSSDe operation."
+        TestPulseLong "test-pulse-1001-us", "5.4":
+            "A test pulse is 1001 us wide."
+        TestPulsesDense "test-pulses-dense", "5.4":
+            "Test pulses come every 9.9 ms (v1.1), or take more than a hundredth of their period (iec2022)."
+        DiscrepancyLong "discrepancy-long", "5.4":
+            "I/Q follows C/Q 3.001 ms (v1.1) or 1.001 ms (iec2022) later."
+        DemandOnOneLine "demand-on-one-line", "5.3.3":
+            "A demand switches C/Q alone."
+        ShutDownLong "shut-down-long", "7.3":
+            "After a power-off of less than 2 s there is no Ready pulse."
     }
 }

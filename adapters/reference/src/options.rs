@@ -12,11 +12,13 @@ pub struct Options {
     pub latency: u8,
     /// `clock=virtual` or `clock=real`: moved by the harness alone, or time itself.
     pub clock: ClockKind,
+    /// `pulse_us=N`: width of the Ready pulse in microseconds, 1..10 000.
+    pub pulse_us: u16,
 }
 
 impl Default for Options {
     fn default() -> Options {
-        Options { mutant: None, latency: 0, clock: ClockKind::Virtual }
+        Options { mutant: None, latency: 0, clock: ClockKind::Virtual, pulse_us: 750 }
     }
 }
 
@@ -53,6 +55,12 @@ pub enum OptionError {
         /// What was given.
         given: String,
     },
+    /// A Ready pulse it cannot give.
+    #[error("the Ready pulse of the reference device is 1 to {max} microseconds wide, not {given:?}", max = Options::MAX_PULSE_US)]
+    BadPulse {
+        /// What was given.
+        given: String,
+    },
     /// A number of ports it cannot have.
     #[error("the reference master has 1 to {max} ports, not {given:?}", max = crate::MasterOptions::MAX_PORTS)]
     BadPorts {
@@ -77,7 +85,10 @@ impl Options {
     /// The greatest latency in exchanges.
     pub const MAX_LATENCY: u8 = 8;
 
-    const NAMES: [&'static str; 3] = ["mutant", "latency", "clock"];
+    /// The widest Ready pulse in microseconds.
+    pub const MAX_PULSE_US: u16 = 10_000;
+
+    const NAMES: [&'static str; 4] = ["mutant", "latency", "clock", "pulse_us"];
     pub(crate) const CLOCKS: [&'static str; 2] = ["virtual", "real"];
 
     /// Reads the decoded pairs of a query, in any order.
@@ -90,6 +101,7 @@ impl Options {
             match known {
                 "mutant" => options.mutant = Some(mutant(value)?),
                 "latency" => options.latency = latency(value)?,
+                "pulse_us" => options.pulse_us = pulse_us(value)?,
                 _ => options.clock = clock(value)?,
             }
         }
@@ -125,6 +137,11 @@ fn mutant(value: &str) -> Result<Mutant, OptionError> {
 pub(crate) fn latency(value: &str) -> Result<u8, OptionError> {
     let number = value.parse().ok().filter(|number| *number <= Options::MAX_LATENCY);
     number.ok_or_else(|| OptionError::BadLatency { given: value.to_owned() })
+}
+
+fn pulse_us(value: &str) -> Result<u16, OptionError> {
+    let width = value.parse().ok().filter(|width| (1..=Options::MAX_PULSE_US).contains(width));
+    width.ok_or_else(|| OptionError::BadPulse { given: value.to_owned() })
 }
 
 pub(crate) fn clock(value: &str) -> Result<ClockKind, OptionError> {

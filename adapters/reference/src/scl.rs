@@ -438,6 +438,7 @@ impl Scl {
         match self.config.mutant {
             Some(Mutant::WatchdogDoubled) => 2 * ns,
             Some(Mutant::WatchdogEarly) => ns.saturating_sub(MS).max(MS),
+            Some(Mutant::WatchdogOneCycleLate) => ns + MS,
             Some(Mutant::WatchdogLate) => ns + 5 * MS,
             _ => ns,
         }

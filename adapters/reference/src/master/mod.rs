@@ -118,7 +118,10 @@ impl FsMaster {
             Stimulus::Plug { device, .. } => unit.plug(now, *device, seen),
             Stimulus::Respond { response, .. } => unit.respond(now, response, fscp, seen),
             Stimulus::Raise { code, qualifier, .. } => unit.raise(*code, *qualifier, seen),
-            Stimulus::Drive { line: line @ (Line::Cq | Line::Iq), level, .. } => unit.drive(now, *line, *level),
+            Stimulus::Drive { line: line @ (Line::Cq | Line::Iq), level, .. } => {
+                seen.push(Seen::Line { port: number, line: *line, level: *level });
+                unit.drive(now, *line, *level);
+            }
             Stimulus::Set { service, value, .. } if unit.set(*service, value, seen) => {}
             _ => seen.push(Seen::Unsupported),
         }
