@@ -106,6 +106,7 @@ mod tests {
             walked: Default::default(),
             start: "operate".to_owned(),
             steps: Vec::new(),
+            measurements: Vec::new(),
             trace: Vec::new(),
             elided: 0,
             duration_ns: 0,

@@ -189,15 +189,18 @@ impl Run<'_> {
         if let Some(problem) = problems.first() {
             return (self.not_run(planned, Execution::ToolError, "tool/case", &problem.to_string()), false);
         }
-        let setups: Vec<Setup> =
-            (0..bench.description.ports).map_while(|index| self.setup(planned, &bench.description, index)).collect();
+        let profile = planned.profile(self.profile);
+        let variant = planned.binding.variant;
+        let setups: Vec<Setup> = (0..bench.description.ports)
+            .map_while(|index| setup(&profile, self.allowed, &bench.description, variant, index))
+            .collect();
         let seed = |port: u64| Pcg64Mcg::seed_from_u64(self.seed ^ hash(&planned.key) ^ port);
         let testers = (0..).zip(&setups).map(|(index, setup)| Tester::new(setup, seed(index))).collect();
         if setups.is_empty() {
             return (self.not_run(planned, Execution::DutError, "dut/contract", "the DUT has no ports"), false);
         }
         let Bench { dut, description, .. } = bench;
-        let mut session = Session::new(dut.as_mut(), description, self.profile, setups, self.interrupted);
+        let mut session = Session::new(dut.as_mut(), description, &profile, setups, self.interrupted);
         session.links.iter_mut().for_each(|link| link.case_alone = self.judges == Judges::CaseAlone);
         let judging = Judging {
             clauses: self.clauses(planned),
@@ -219,11 +222,6 @@ impl Run<'_> {
                 (self.not_run(planned, Execution::ToolError, "tool/panic", &why), true)
             }
         }
-    }
-
-    /// What the oracle of a port is told, ports counted from 0; `None` when the port cannot have a number.
-    fn setup(&self, planned: &Planned<'_>, description: &Description, index: u8) -> Option<Setup> {
-        setup(self.profile, self.allowed, description, planned.binding.variant, index)
     }
 
     /// Whether anything a case judges is demanded: only then its own expectations can fail a product.
@@ -360,6 +358,7 @@ impl Run<'_> {
             walked: Walked::default(),
             start: case.start.clone(),
             steps: Vec::new(),
+            measurements: Vec::new(),
             trace: Vec::new(),
             elided: 0,
             duration_ns: 0,

@@ -4,8 +4,9 @@ use crate::case::{Binding, Case};
 use crate::library::{Library, needs};
 use crate::problem::Problem;
 use crate::profile::{Parameterization, Profile};
-use fsct_adapters::{Description, Pco, Role};
+use fsct_adapters::{ClockKind, Description, Pco, Role};
 use fsct_protocol::Edition;
+use std::borrow::Cow;
 
 /// One expanded case.
 #[derive(Clone, Debug)]
@@ -16,6 +17,16 @@ pub struct Planned<'l> {
     pub binding: Binding,
     /// Unique key.
     pub key: String,
+}
+
+impl Planned<'_> {
+    /// The profile the case is judged by: that of the run, with the FSP_Watchdog the case chooses.
+    pub fn profile<'p>(&self, profile: &'p Profile) -> Cow<'p, Profile> {
+        match self.binding.watchdog_ms() {
+            Some(ms) => Cow::Owned(profile.with_watchdog(ms)),
+            None => Cow::Borrowed(profile),
+        }
+    }
 }
 
 /// What runs, in order.
@@ -133,6 +144,15 @@ fn excluded(library: &Library, profile: &Profile, description: &Description, pla
     if most > description.ports {
         return Some(format!("it takes {most} ports, the DUT has {}", description.ports));
     }
+    if let Some(ms) = binding.watchdog_ms()
+        && description.clock.kind == ClockKind::Real
+        && profile.with_watchdog(ms).master_cycle_time_ns < profile.master_cycle_time_ns
+    {
+        let cycle_us = profile.master_cycle_time_ns / 1_000;
+        return Some(format!(
+            "FSP_Watchdog of {ms} ms is too short for the MasterCycleTime of {cycle_us} us in the profile"
+        ));
+    }
     if let Some(feature) = case.features.iter().find(|feature| !profile.features.contains(feature)) {
         return Some(format!("the profile does not list the feature `{feature}`"));
     }
@@ -166,7 +186,7 @@ pub fn unreached(role: Role) -> Description {
         ports: if role == Role::Master { 2 } else { 1 },
         pcos: Pco::ALL.to_vec(),
         offers: crate::library::EVERYTHING.to_vec(),
-        clock: fsct_adapters::Clock { kind: fsct_adapters::ClockKind::Virtual, resolution_ns: 1, uncertainty_ns: 0 },
+        clock: fsct_adapters::Clock { kind: ClockKind::Virtual, resolution_ns: 1, uncertainty_ns: 0 },
         vendor: String::new(),
         product: String::new(),
         version: String::new(),

@@ -171,6 +171,12 @@ impl Profile {
         }
     }
 
+    /// This profile with another FSP_Watchdog, and a MasterCycleTime that fits into it: at most two fifths.
+    pub fn with_watchdog(&self, watchdog_ms: u16) -> Profile {
+        let most = u64::from(watchdog_ms) * 400_000;
+        Profile { watchdog_ms, master_cycle_time_ns: self.master_cycle_time_ns.min(most), ..self.clone() }
+    }
+
     /// FSP_Watchdog in nanoseconds.
     pub fn watchdog_ns(&self) -> u64 {
         u64::from(self.watchdog_ms) * 1_000_000

@@ -12,6 +12,7 @@ mod html;
 mod journal;
 mod junit;
 mod machine;
+pub mod measurement;
 pub mod record;
 mod story;
 mod summary;

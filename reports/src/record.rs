@@ -4,6 +4,7 @@
 //! end. A record without footer is valid and partial. Nothing here depends on wall time, so the same seed on a
 //! virtual clock gives the same octets.
 
+use crate::measurement::Measurement;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -241,6 +242,9 @@ pub struct CaseRecord {
     pub start: String,
     /// Steps with their expectations; index 0 is the start condition, the last is the liveness check.
     pub steps: Vec<StepRecord>,
+    /// Values measured in it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub measurements: Vec<Measurement>,
     /// What crossed the boundary, in order.
     pub trace: Vec<Entry>,
     /// Entries left out of the middle of the trace because it was too long.

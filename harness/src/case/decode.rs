@@ -266,7 +266,11 @@ impl Decoder<'_> {
     fn app(&mut self, node: &Node) -> Action {
         let mut fields = Fields::new(self.source, node, "`app`", self.problems);
         let services: &[(Service, &'static str, bool)] = match self.role {
-            Role::Device => &[(Service::PdinD, "PDin_D", false), (Service::SdsetDs, "SDset_DS", true)],
+            Role::Device => &[
+                (Service::PdinD, "PDin_D", false),
+                (Service::SdsetDs, "SDset_DS", true),
+                (Service::OssdeDemand, "OSSDe_demand", true),
+            ],
             Role::Master => &[
                 (Service::PdoutM, "PDout_M", false),
                 (Service::SetsdC, "setSD_C", true),

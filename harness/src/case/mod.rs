@@ -245,7 +245,7 @@ impl Case {
     pub fn steps(&self, binding: &Binding, problems: &mut Vec<Problem>) -> Vec<Step> {
         let mut used = BTreeSet::new();
         let steps = self.substitute(&self.steps, binding, &mut used, problems);
-        for axis in self.sweep.iter().filter(|axis| !axis.is_variant() && !used.contains(&axis.name)) {
+        for axis in self.sweep.iter().filter(|axis| !axis.is_of_the_dut() && !used.contains(&axis.name)) {
             let message = format!("the sweep over `{0}` changes nothing: no step uses `${0}`", axis.name);
             problems.push(Problem::new(&self.source, axis.at.clone(), message));
         }

@@ -13,6 +13,9 @@ const MAX_POINTS: usize = 20_000;
 /// Axes that choose the variant of the DUT instead of a value in the steps.
 const VARIANT: [&str; 5] = ["edition", "mode", "pd", "pd_out", "pd_in"];
 
+/// The axis that takes the place of FSP_Watchdog of the profile, in milliseconds.
+const WATCHDOG: &str = "FSP_Watchdog";
+
 /// One variable of a sweep with its values as written.
 #[derive(Clone, Debug)]
 pub struct Axis {
@@ -30,8 +33,13 @@ impl Axis {
     }
 
     /// Whether it chooses edition, mode or sizes.
-    pub fn is_variant(&self) -> bool {
+    fn is_variant(&self) -> bool {
         VARIANT.contains(&self.name.as_str())
+    }
+
+    /// Whether the steps need not name it: it says what the DUT is, or how it is parameterized.
+    pub fn is_of_the_dut(&self) -> bool {
+        self.is_variant() || self.name == WATCHDOG
     }
 }
 
@@ -48,6 +56,11 @@ impl Binding {
     /// The value of a variable.
     pub fn value(&self, name: &str) -> Option<&str> {
         self.values.iter().find(|(known, _)| known == name).map(|(_, value)| value.as_str())
+    }
+
+    /// FSP_Watchdog in milliseconds, where the case chooses it.
+    pub fn watchdog_ms(&self) -> Option<u16> {
+        self.value(WATCHDOG).and_then(|ms| ms.parse().ok())
     }
 
     fn with(&self, name: &str, value: String) -> Binding {
@@ -94,12 +107,14 @@ pub fn axes(source: &Arc<Source>, node: &Node, problems: &mut Vec<Problem>) -> V
                 "pd" | "pd_out" | "pd_in" => {
                     matches!(text.as_str(), "max" | "typical" | "each") || text.parse::<u8>().is_ok_and(|n| n <= 25)
                 }
+                WATCHDOG => text.parse::<u16>().is_ok_and(|ms| ms > 0),
                 _ => !text.starts_with('$'),
             };
             if !known {
                 let expected = match key.text.as_str() {
                     "edition" => "v1.1 or iec2022",
                     "mode" => "crc16 or crc32",
+                    WATCHDOG => "1 to 65535 milliseconds",
                     _ => "0 to 25, typical, max or each",
                 };
                 problems.push(Problem::new(source, at.clone(), format!("`{text}` is no {}: {expected}", key.text)));

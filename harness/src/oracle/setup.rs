@@ -139,6 +139,7 @@ impl App {
             Service::Qualifier => self.qualifier = bit,
             Service::PdinD
             | Service::SdsetDs
+            | Service::OssdeDemand
             | Service::PdoutM
             | Service::SetsdC
             | Service::ChfackC

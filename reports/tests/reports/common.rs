@@ -98,6 +98,7 @@ pub fn passed(number: usize) -> CaseRecord {
                 checks: vec![Check { key: "DCount_i".into(), expected: "6".into(), observed: "6".into(), met: true }],
             },
         ],
+        measurements: Vec::new(),
         trace: vec![
             Entry { at: 0, count: 1, what: What::Power { on: true }, via: Vec::new(), note: String::new() },
             exchange(1, "0001029D56", "A5FEE46AF6", &["T20", "T21", "T22", "T23"], ""),
@@ -185,6 +186,7 @@ pub fn mastered(number: usize) -> CaseRecord {
         reasons: vec![Reason { entry: Some(8), ..reason(Verdict::Fail, "expect/qualifier", "qualifier 1") }],
         transitions: BTreeMap::from([("T1".into(), 1), ("OSSDe T1".into(), 1), ("OSSDe T3".into(), 2)]),
         steps: Vec::new(),
+        measurements: Vec::new(),
         trace: vec![
             on_port(0, 1, false, "Device connected: VendorID 0x0001, DeviceID 0x000002, COM3, 6 octets in, 6 out"),
             on_port(0, 1, true, "L+ on"),
