@@ -203,6 +203,7 @@ impl Run<'_> {
         let mut session = Session::new(dut.as_mut(), description, &profile, setups, self.interrupted);
         session.links.iter_mut().for_each(|link| link.case_alone = self.judges == Judges::CaseAlone);
         let judging = Judging {
+            limits: &self.library.limits,
             clauses: self.clauses(planned),
             demands: self.demands(planned),
             shown: self.library.tolerances.shown(),
@@ -292,6 +293,7 @@ impl Run<'_> {
             record.walked = coverage.names(session.walked());
         }
         record.steps = outcome.steps;
+        record.measurements = outcome.measurements;
         record.elided = told.elided;
         record.trace = told.entries;
         record.duration_ns = duration_ns;

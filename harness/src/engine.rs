@@ -1,5 +1,6 @@
 //! Executes one case: start condition, steps, and the liveness check every case ends with.
 
+mod lines;
 mod port;
 mod reach;
 
@@ -12,9 +13,12 @@ use crate::parameterize;
 use crate::partner::Partner;
 use crate::profile::{Parameterization, Profile};
 use crate::session::{Reply, Session, Stop};
+use crate::stopwatch::Stopwatch;
 use crate::tester::Tester;
 use fsct_adapters::{DutError, Fault, Mode, Octets, Pco, Role, Service, Stimulus};
 use fsct_protocol::fsp::{INDEX_PROTOCOL, INDEX_VERIFY, Protocol};
+use fsct_lines::{Limits, Quantity};
+use fsct_reports::measurement::Measurement;
 use fsct_reports::record::{Execution, Reason, StepRecord, Verdict};
 
 /// The bound of the liveness requirement (R-11.5.3-22): 8 SCL cycles plus 2 FSP_Watchdog.
@@ -35,13 +39,17 @@ pub struct Outcome {
     pub shown_at: Vec<u64>,
     /// Steps as executed.
     pub steps: Vec<StepRecord>,
+    /// Values measured.
+    pub measurements: Vec<Measurement>,
     /// The DUT was lost: the connection is of no further use.
     pub lost: bool,
 }
 
 /// How the expectations of a case weigh.
 #[derive(Clone, Debug)]
-pub struct Judging {
+pub struct Judging<'l> {
+    /// Limits of measured values.
+    pub limits: &'l Limits,
     /// Clauses of the requirements the case judges.
     pub clauses: String,
     /// Whether failing an expectation fails the case, or is a remark because nothing it judges is demanded.
@@ -56,7 +64,7 @@ pub struct Engine<'s, 'd> {
     /// One for each link.
     testers: Vec<Tester>,
     outcome: Outcome,
-    judging: Judging,
+    judging: Judging<'s>,
     checks: usize,
     step: usize,
     /// Octets without safety relevance in and out, as configured last.
@@ -67,13 +75,14 @@ pub struct Engine<'s, 'd> {
 
 impl<'s, 'd> Engine<'s, 'd> {
     /// Ready to begin.
-    pub fn new(session: &'s mut Session<'d>, testers: Vec<Tester>, judging: Judging) -> Engine<'s, 'd> {
+    pub fn new(session: &'s mut Session<'d>, testers: Vec<Tester>, judging: Judging<'s>) -> Engine<'s, 'd> {
         let outcome = Outcome {
             verdict: Verdict::Pass,
             execution: Execution::Ok,
             reasons: Vec::new(),
             shown_at: Vec::new(),
             steps: Vec::new(),
+            measurements: Vec::new(),
             lost: false,
         };
         Engine { session, testers, outcome, judging, checks: 0, step: 0, nsr: (0, 0), client: 0 }
@@ -81,6 +90,12 @@ impl<'s, 'd> Engine<'s, 'd> {
 
     /// Runs start condition, steps and liveness check.
     pub fn run(mut self, start: &[Step], start_name: &str, steps: &[Step]) -> Outcome {
+        let timed = |wanted: &Wanted| {
+            matches!(wanted, Wanted::Quantity(Quantity::DeviceWatchdog | Quantity::MasterWatchdog))
+        };
+        if steps.iter().flat_map(|step| &step.measure).any(timed) {
+            self.session.links.iter_mut().for_each(|link| link.stopwatch = Some(Stopwatch::default()));
+        }
         let name = format!("start: {start_name}");
         let liveness = match self.session.role() {
             Role::Device => "liveness: a conformant FS-Master restores operation".to_owned(),
@@ -194,6 +209,7 @@ impl<'s, 'd> Engine<'s, 'd> {
         self.judge(&reached, &before, Verdict::Fail);
         self.judge(&step.expect, &before, Verdict::Fail);
         self.judge(&step.remark, &before, Verdict::Remark);
+        self.measure(&step.measure);
         Ok(())
     }
 
@@ -256,10 +272,14 @@ impl<'s, 'd> Engine<'s, 'd> {
             Action::Unplug => self.unplug()?,
             Action::Smi(smi) => self.smi(smi)?,
             Action::Drive(levels) => self.drive(levels)?,
-            Action::Pass(duration) => {
-                let ns = self.nanoseconds(*duration).unsigned_abs();
+            Action::Pass { time, after } => {
+                if let Some(after) = after {
+                    self.await_lines(*after)?;
+                }
+                let ns = self.nanoseconds(*time).unsigned_abs();
                 self.session.pass(ns)?;
             }
+            Action::Wake(wake) => self.wake(wake)?,
             Action::Raise { code, qualifier } => {
                 let port = self.session.link().port;
                 self.session.act(Stimulus::Raise { port, code: *code, qualifier: *qualifier })?;
@@ -362,7 +382,15 @@ impl<'s, 'd> Engine<'s, 'd> {
         // Late enough for an expiry to show, and one exchange more to see that it does not.
         let late =
             profile.margin_ns() as i64 + (profile.answer_latency as i64 + 1) * profile.master_cycle_time_ns as i64;
+        let limit = duration.limit.and_then(|(times, quantity, end)| {
+            let limit = self.judging.limits.get(quantity.symbol())?;
+            let bounds = limit.bounds(self.session.setup().edition, |name| profile.declared(name))?;
+            let bound = if end == End::Min { bounds.min } else { bounds.max };
+            Some(times * i64::try_from(bound?).ok()?)
+        });
         duration.watchdogs * profile.watchdog_ns() as i64
+            + limit.unwrap_or(0)
+            + duration.lates * profile.margin_ns() as i64
             + duration.cycles * profile.master_cycle_time_ns as i64
             + duration.margins * late
             + duration.guards * (profile.timer_tick_us * 1_000 + self.session.description.clock.uncertainty_ns) as i64

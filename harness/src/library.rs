@@ -298,7 +298,7 @@ fn expects(step: &Step) -> bool {
         Action::Partner(_) | Action::Connect(_) => true,
         _ => false,
     };
-    until || !step.expect.is_empty() || !step.remark.is_empty()
+    until || !step.expect.is_empty() || !step.remark.is_empty() || !step.measure.is_empty()
 }
 
 /// The points of control and observation that steps cannot do without.
@@ -308,7 +308,7 @@ pub fn needs(steps: &[Step]) -> impl Iterator<Item = Pco> + '_ {
         Action::App(_) => Some(Pco::App),
         Action::Parameterize(ref asked) if !asked.starts || !asked.blocks || asked.armed => Some(Pco::Acyclic),
         Action::Read { .. } | Action::Write { .. } | Action::Smi(_) | Action::Raise { .. } => Some(Pco::Acyclic),
-        Action::Drive(_) => Some(Pco::Line),
+        Action::Drive(_) | Action::Wake(_) | Action::Pass { after: Some(_), .. } => Some(Pco::Line),
         _ => None,
     })
 }

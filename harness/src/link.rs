@@ -2,7 +2,9 @@
 
 use crate::case::model::KEPT;
 use crate::keeper::Keeper;
+use crate::lines::Lines;
 use crate::oracle::{App, Mismatch, Oracle, OssdeOracle, Setup};
+use crate::stopwatch::Stopwatch;
 use fsct_adapters::{Identity, Line, Mode, Octets, Role, Seen, Service};
 use fsct_protocol::Edition;
 use fsct_protocol::fsp::INDEX_VERIFY;
@@ -61,6 +63,10 @@ pub struct Link {
     pub ossde: Option<OssdeOracle>,
     /// When the services of an OSSDe port changed last and have not been looked at.
     unsettled: Option<u64>,
+    /// What happens on L+, C/Q and I/Q.
+    pub lines: Lines,
+    /// Times the watchdog of the DUT, in a case that wants it measured.
+    pub stopwatch: Option<Stopwatch>,
     /// ChFAck_C as set last.
     pub ack: bool,
     /// The conformant FS-Device that keeps the port in operation while the case is about another.
@@ -97,6 +103,8 @@ impl Link {
             levels: (false, false),
             ossde: None,
             unsettled: None,
+            lines: Lines::default(),
+            stopwatch: None,
             ack: false,
             keeper: None,
             case_alone: false,
@@ -142,6 +150,9 @@ impl Link {
     /// An output service took a value at this time of the case.
     pub fn report(&mut self, service: Service, value: Octets, at: u64) {
         self.app.report(service, value);
+        if let Some(stopwatch) = &mut self.stopwatch {
+            stopwatch.report(service, value.is_set(), at);
+        }
         let Some(ossde) = &mut self.ossde else { return };
         match service {
             Service::PdinM => ossde.on(value.as_slice().first().is_some_and(|octet| octet & 0b11 == 0b11)),
@@ -211,6 +222,13 @@ impl Link {
         }
         let zeros = vec![0; missing];
         Octets::new(&[spdu.as_slice(), &zeros].concat())
+    }
+
+    /// An exchange at this time of the case, for a watchdog that is timed.
+    pub fn time(&mut self, at: u64, sent: Option<Octets>, image: Option<Octets>) {
+        if let Some(stopwatch) = &mut self.stopwatch {
+            stopwatch.exchange(self.oracle.setup(), at, sent, image);
+        }
     }
 
     /// Something of the base system.

@@ -57,6 +57,12 @@ pub struct Profile {
     pub watchdog_margin: u64,
     /// Tick of the product's timer in microseconds (A24).
     pub timer_tick_us: u64,
+    /// FSP_TimeToReady in milliseconds: of the product, or as an FS-Master is given it.
+    pub time_to_ready_ms: u64,
+    /// FSP_MinShutDownTime in milliseconds.
+    pub min_shut_down_ms: u64,
+    /// How late an FS-Master may end its waiting for a Ready pulse, in milliseconds (L03).
+    pub ready_margin_ms: u64,
     /// How long the SCL may take to start after FSP parameterization, in milliseconds.
     pub scl_start_ms: u64,
     /// Reading of the start value of the signature (A02).
@@ -111,6 +117,9 @@ impl Profile {
         let reset_password = number("FSResetMasterPW", 0..=0xFFFF_FFFF, 0) as u32;
         let vendor_id = number("VendorID", 1..=0xFFFF, 0x04D2) as u16;
         let device_id = number("DeviceID", 1..=0xFF_FFFF, 0x00_1234) as u32;
+        let time_to_ready_ms = number("FSP_TimeToReady_ms", 10..=327_670, 5_000);
+        let min_shut_down_ms = number("FSP_MinShutDownTime_ms", 1_000..=10_000, 1_000);
+        let ready_margin_ms = number("ready_margin_ms", 0..=60_000, 100);
         let watchdog_margin = number("watchdog_margin", 0..=1_000, 2);
         let timer_tick_us = number("timer_tick_us", 0..=1_000_000, 0);
         let scl_start_ms = number("SCL_start_ms", 0..=60_000, 0);
@@ -158,6 +167,9 @@ impl Profile {
                 reset_password,
                 vendor_id,
                 device_id,
+                time_to_ready_ms,
+                min_shut_down_ms,
+                ready_margin_ms,
                 watchdog_margin,
                 timer_tick_us,
                 scl_start_ms,
@@ -180,6 +192,26 @@ impl Profile {
     /// FSP_Watchdog in nanoseconds.
     pub fn watchdog_ns(&self) -> u64 {
         u64::from(self.watchdog_ms) * 1_000_000
+    }
+
+    /// What a limit takes from a parameter or a declaration of the product, in the unit of its row in `limits.yaml`; `None`:
+    /// nothing is declared.
+    pub fn declared(&self, name: &str) -> Option<f64> {
+        let ms = |ns: u64| ns as f64 / 1e6;
+        let tick_ns = self.timer_tick_us * 1_000;
+        // MTimer starts when the SPDU is handed over, up to one MasterCycleTime before it is on the line (A24).
+        let early_ns = tick_ns + if self.role == Role::Master { self.master_cycle_time_ns } else { 0 };
+        let late_ns = tick_ns + self.margin_ns() + self.answer_latency * self.master_cycle_time_ns;
+        let wait_s = |ready_ms: u64| (ready_ms + self.ready_margin_ms) as f64 / 1e3;
+        match name {
+            "FSP_Watchdog" => Some(ms(self.watchdog_ns().saturating_sub(early_ns))),
+            "FSP_Watchdog and margin" => Some(ms(self.watchdog_ns() + late_ns)),
+            "FSP_TimeToReady" => Some(self.time_to_ready_ms as f64 / 1e3),
+            "FSP_TimeToReady and margin" => Some(wait_s(self.time_to_ready_ms)),
+            "5 s and margin" => Some(wait_s(5_000)),
+            "FSP_MinShutDownTime" => Some(self.min_shut_down_ms as f64 / 1e3),
+            _ => None,
+        }
     }
 
     /// Margin of A24 in nanoseconds.

@@ -10,7 +10,7 @@ use crate::profile::Profile;
 use crate::trace::{Margin, Told, hex};
 use crate::walk::Walked;
 use fsct_adapters::{
-    ClockKind, Description, Dut, DutError, Keep, MADE_UP, Mode, Observation, Octets, Pco, Recorder, Role, Seen,
+    ClockKind, Description, Dut, DutError, Keep, Line, MADE_UP, Mode, Observation, Octets, Pco, Recorder, Role, Seen,
     Service, SmiRequest, SmiResult, Stimulus,
 };
 use fsct_protocol::spdu::View;
@@ -21,6 +21,9 @@ use std::time::{Duration, Instant};
 
 /// Exchanges sent in one go where the answers do not decide what comes next.
 const BATCH: usize = 8_192;
+
+/// The most time that passes at once where an FS-Device tells its lines.
+const LINES_NS: u64 = 50_000_000;
 
 /// Why a case went no further.
 #[derive(Clone, Debug)]
@@ -217,7 +220,12 @@ impl<'d> Session<'d> {
         while self.now < until {
             let kept = self.kept();
             let rest = until - self.now;
-            let part = if kept { rest.min(self.profile.master_cycle_time_ns) } else { rest };
+            let part = match self.role() {
+                _ if kept => rest.min(self.profile.master_cycle_time_ns),
+                // Test pulses in between are as many observations, and those of one stimulus are bounded.
+                Role::Device if self.serves(Pco::Line) => rest.min(LINES_NS),
+                _ => rest,
+            };
             let mut stimuli = Vec::new();
             if !self.wait_for_turn(part) {
                 stimuli.push(Stimulus::Advance { ns: part });
@@ -349,6 +357,7 @@ impl<'d> Session<'d> {
             if let (Stimulus::Advance { ns }, None) = (stimulus, &self.pace) {
                 self.now += ns;
             }
+            self.drive(index, stimulus, rest);
             while let Some((observation, later)) = rest.split_first()
                 && usize::from(observation.stimulus) == index
             {
@@ -363,6 +372,22 @@ impl<'d> Session<'d> {
             self.settle(u64::MAX)?;
         }
         Ok(())
+    }
+
+    /// What the tester does to a line, unless the DUT tells it, with its own time stamp.
+    fn drive(&mut self, index: usize, stimulus: &Stimulus, observed: &[Observation]) {
+        let (port, line, level) = match *stimulus {
+            Stimulus::Drive { port, line, level } => (port, line, level),
+            Stimulus::Power(level) if self.role() == Role::Device => (1, Line::Power, level),
+            _ => return,
+        };
+        let told = observed.iter().take_while(|observation| usize::from(observation.stimulus) == index).any(
+            |observation| matches!(observation.seen, Seen::Line { port: p, line: l, .. } if p == port && l == line),
+        );
+        let now = self.now;
+        if let Some(link) = self.links.iter_mut().find(|link| link.port == port && !told) {
+            link.lines.edge(now, line, level);
+        }
     }
 
     fn digest_one(&mut self, stimulus: &Stimulus, observation: &Observation) -> Result<(), Stop> {
@@ -380,6 +405,7 @@ impl<'d> Session<'d> {
                 let Stimulus::Exchange { octets: sent, .. } = stimulus else { return Ok(()) };
                 let current = self.link().port == *port;
                 let Some(link) = self.links.iter_mut().find(|link| link.port == *port) else { return Ok(()) };
+                link.time(observation.at.saturating_sub(zero), *sent, *octets);
                 let verdict = link.exchange(at, sent.as_ref(), *octets);
                 let via = link.oracle.via();
                 self.last_exchange = observation.at.saturating_sub(zero);
@@ -398,7 +424,12 @@ impl<'d> Session<'d> {
             }
             Seen::Mode { port, .. } | Seen::Request { port, .. } | Seen::Line { port, .. } => {
                 match self.links.iter_mut().find(|link| link.port == *port) {
-                    Some(link) => link.base(at, &observation.seen),
+                    Some(link) => {
+                        if let Seen::Line { line, level, .. } = observation.seen {
+                            link.lines.edge(observation.at.saturating_sub(zero), line, level);
+                        }
+                        link.base(at, &observation.seen);
+                    }
                     None => {
                         let what = format!("an observation on port {port}, of {} ports", self.links.len());
                         return Err(Stop::Dut(DutError::Contract { what }));

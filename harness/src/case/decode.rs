@@ -5,6 +5,7 @@ use crate::problem::{Problem, Source, suggestion};
 use crate::tree::{Fields, Placed};
 use crate::yaml::{Node, Value};
 use fsct_adapters::{Role, Service};
+use fsct_lines::{Claim, Quantity};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -30,7 +31,7 @@ const BACKS: &[(Back, &str)] = &[
     (Back::Late, "late"),
 ];
 /// The words for the action of a step, and the side they are for.
-const ACTIONS: [(&str, &[Role]); 16] = [
+const ACTIONS: [(&str, &[Role]); 17] = [
     ("exchange", &[Role::Device, Role::Master]),
     ("wait", &[Role::Device, Role::Master]),
     ("partner", &[Role::Device, Role::Master]),
@@ -44,7 +45,8 @@ const ACTIONS: [(&str, &[Role]); 16] = [
     ("unplug", &[Role::Master]),
     ("smi", &[Role::Master]),
     ("drive", &[Role::Master]),
-    ("pass", &[Role::Master]),
+    ("pass", &[Role::Device, Role::Master]),
+    ("wake", &[Role::Device]),
     ("raise", &[Role::Master]),
     ("look", &[Role::Device, Role::Master]),
 ];
@@ -58,6 +60,13 @@ pub fn steps(source: &Arc<Source>, role: Role, node: &Node, problems: &mut Vec<P
 /// `N ago`: how many SPDUs or images before the last one.
 fn ago(text: &str) -> Option<usize> {
     text.strip_suffix(" ago")?.parse().ok().filter(|count| *count < KEPT)
+}
+
+/// `t_RO.min`: an end of a limit.
+fn limit(word: &str) -> Option<(Quantity, End)> {
+    let (symbol, end) = word.rsplit_once('.')?;
+    let end = [("min", End::Min), ("max", End::Max)].into_iter().find(|entry| entry.0 == end)?.1;
+    Some((Quantity::from_symbol(symbol)?, end))
 }
 
 struct Decoder<'a> {
@@ -82,6 +91,7 @@ impl Decoder<'_> {
         };
         let expect = fields.get("expect");
         let remark = fields.get("remark");
+        let measure = fields.get("measure");
         let _note = fields.optional("note");
         fields.finish(self.problems);
         let at = match &node.value {
@@ -90,7 +100,7 @@ impl Decoder<'_> {
         };
         let action = match found.as_slice() {
             [(word, value)] => self.action(word, value)?,
-            [] if expect.is_some() || remark.is_some() => Action::Look,
+            [] if expect.is_some() || remark.is_some() || measure.is_some() => Action::Look,
             [] => {
                 let words = words().collect::<Vec<_>>().join(", ");
                 self.problem(&at, format!("a step needs one of {words}"));
@@ -103,8 +113,9 @@ impl Decoder<'_> {
         };
         let expect = expect.map(|node| self.expectations(node)).unwrap_or_default();
         let remark = remark.map(|node| self.expectations(node)).unwrap_or_default();
+        let measure = measure.map(|node| self.wanted(node)).unwrap_or_default();
         let port = port.unwrap_or(1) as u8;
-        Some(Step { text: crate::yaml::flow(node), at, port, action, expect, remark })
+        Some(Step { text: crate::yaml::flow(node), at, port, action, expect, remark, measure })
     }
 
     fn action(&mut self, word: &str, node: &Node) -> Option<Action> {
@@ -126,6 +137,7 @@ impl Decoder<'_> {
             "drive" => Some(self.drive(node)),
             "pass" => self.pass(node),
             "raise" => self.raise(node),
+            "wake" => self.wake(node),
             _ => {
                 Fields::new(self.source, node, "`look`", self.problems).finish(self.problems);
                 Some(Action::Look)
@@ -167,6 +179,32 @@ impl Decoder<'_> {
         Some(Action::Wait(Wait { until, link }))
     }
 
+    fn wake(&mut self, node: &Node) -> Option<Action> {
+        let mut fields = Fields::new(self.source, node, "`wake`", self.problems);
+        let after = fields.text("after");
+        fields.finish(self.problems);
+        Some(Action::Wake(Wake { after: self.duration(after?)? }))
+    }
+
+    /// `[t_RP, one-ready-pulse]`.
+    fn wanted(&mut self, node: &Node) -> Vec<Wanted> {
+        let items = crate::tree::list(self.source, node, "`measure`", self.problems);
+        let words = || Quantity::ALL.iter().map(|entry| entry.1).chain(Claim::ALL.iter().map(|entry| entry.1));
+        let mut found = Vec::new();
+        for (text, at) in items.iter().filter_map(crate::tree::scalar) {
+            let claim = || Claim::ALL.into_iter().find(|entry| entry.1 == text).map(|entry| Wanted::Claim(entry.0));
+            match Quantity::from_symbol(&text).map(Wanted::Quantity).or_else(claim) {
+                Some(wanted) => found.push(wanted),
+                None => {
+                    let help = suggestion(&text, words());
+                    let message = format!("`{text}` is nothing that can be measured on the lines");
+                    self.problems.push(Problem::new(self.source, at, message).help(help));
+                }
+            }
+        }
+        found
+    }
+
     fn duration(&mut self, (text, at): Placed) -> Option<Duration> {
         let mut sum = Duration::default();
         let spaced = text.replace('+', " + ").replace('-', " - ");
@@ -184,9 +222,13 @@ impl Decoder<'_> {
                 "FSP_Watchdog" if open => sum.watchdogs += amount,
                 "MasterCycleTime" if open => sum.cycles += amount,
                 "margin" if open => sum.margins += amount,
+                "late" if open => sum.lates += amount,
                 "guard" if open => sum.guards += amount,
                 "ms" if open && number.is_some() => sum.ms += amount,
                 "us" if open && number.is_some() => sum.us += amount,
+                _ if open && sum.limit.is_none() && limit(word).is_some() => {
+                    sum.limit = limit(word).map(|(quantity, end)| (amount, quantity, end));
+                }
                 _ => match word.parse::<i64>() {
                     Ok(value) if open && number.is_none() && (0..=1_000_000).contains(&value) => {
                         number = Some(value);
@@ -204,7 +246,7 @@ impl Decoder<'_> {
         self.problem(
             at,
             format!(
-                "`{text}` is no duration, such as `2 FSP_Watchdog - 1 MasterCycleTime` (also `margin`, `guard`, `5 ms`, `900 us`)"
+                "`{text}` is no duration, such as `2 FSP_Watchdog - 1 MasterCycleTime` (also `margin`, `late`, `guard`, `5 ms`, `900 us`, `t_RW.max`)"
             ),
         );
         None

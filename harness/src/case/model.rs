@@ -7,6 +7,7 @@ mod spdu;
 
 pub use expect::{Expectation, Expected, Key, Outcome};
 use fsct_adapters::{Line, Service};
+use fsct_lines::{Claim, Quantity};
 pub use parameters::{Parameterize, RecordField};
 pub use port::{Answered, Configure, Connect, ERRORS, Smi, Until, Value, blocks};
 pub use spdu::{Back, Corrupt, Count, Data, Exchange, Field, Image, KEPT, PortNum, Signature};
@@ -27,6 +28,17 @@ pub struct Step {
     pub expect: Vec<Expectation>,
     /// What should be seen afterwards; the contrary is a remark.
     pub remark: Vec<Expectation>,
+    /// What has to be measured by now, and to lie within its limits.
+    pub measure: Vec<Wanted>,
+}
+
+/// Something a step wants measured.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// A value that has limits.
+    Quantity(Quantity),
+    /// Something that is so or is not.
+    Claim(Claim),
 }
 
 /// What a step does.
@@ -71,7 +83,14 @@ pub enum Action {
     /// Levels on C/Q and I/Q.
     Drive(Vec<(Line, bool)>),
     /// Time passes; ports in operation go on.
-    Pass(Duration),
+    Pass {
+        /// So long.
+        time: Duration,
+        /// From when on, on the lines of an FS-Device; `None`: from now on.
+        after: Option<After>,
+    },
+    /// A wake-up request to an FS-Device after its Ready pulse.
+    Wake(Wake),
     /// The Device on the port raises an Event.
     Raise {
         /// EventCode.
@@ -103,6 +122,22 @@ pub enum Meanwhile {
     Zero,
 }
 
+/// What is awaited on the lines of an FS-Device.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum After {
+    /// The end of the Ready pulse.
+    ReadyPulse,
+    /// Both outputs ON.
+    Ossde,
+}
+
+/// A wake-up request.
+#[derive(Copy, Clone, Debug)]
+pub struct Wake {
+    /// So long after the end of the Ready pulse.
+    pub after: Duration,
+}
+
 /// A duration in symbols: a sum of multiples.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub struct Duration {
@@ -112,12 +147,25 @@ pub struct Duration {
     pub cycles: i64,
     /// Multiples of the margin of A24: how late an expiry may show, and one exchange to see whether it did.
     pub margins: i64,
+    /// Multiples of how late an expiry may show, without an exchange to see it.
+    pub lates: i64,
+    /// A multiple of the smallest or largest value of a limit, of one limit at most.
+    pub limit: Option<(i64, Quantity, End)>,
     /// Multiples of the guard band: tick of the product's timer plus uncertainty of a time stamp.
     pub guards: i64,
     /// Milliseconds.
     pub ms: i64,
     /// Microseconds.
     pub us: i64,
+}
+
+/// An end of a limit.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum End {
+    /// The smallest value permitted.
+    Min,
+    /// The largest value permitted.
+    Max,
 }
 
 /// A conformant FS-Master takes over.

@@ -165,9 +165,14 @@ impl Decoder<'_> {
 
     pub(super) fn pass(&mut self, node: &Node) -> Option<Action> {
         let mut fields = Fields::new(self.source, node, "`pass`", self.problems);
+        const AFTER: &[(After, &str)] = &[(After::ReadyPulse, "Ready pulse"), (After::Ossde, "OSSDe")];
         let time = fields.text("time");
+        let after = match self.role {
+            Role::Device => fields.optional_word("after", AFTER),
+            Role::Master => None,
+        };
         fields.finish(self.problems);
-        self.duration(time?).map(Action::Pass)
+        Some(Action::Pass { time: self.duration(time?)?, after })
     }
 
     pub(super) fn raise(&mut self, node: &Node) -> Option<Action> {
