@@ -146,11 +146,13 @@ struct Candidate {
     wake_up: bool,
     /// I/Q was high during it.
     iq: bool,
+    /// Rising edge of a pulse like a wake-up that followed a Ready pulse.
+    woken: Option<u64>,
 }
 
 impl Candidate {
     fn quiet(&self) -> u64 {
-        if self.wake_up { WAKE_UP_QUIET } else { READY_QUIET }
+        if self.wake_up || self.woken.is_some() { WAKE_UP_QUIET } else { READY_QUIET }
     }
 }
 
@@ -484,22 +486,18 @@ impl Decoder {
     /// A pulse where there may be octets: what it is depends on the quiet around it.
     fn talking_pulse(&mut self, rise: u64, fall: u64) {
         let wake_up = self.is_wake_up(rise, fall);
-        match self.candidate.take() {
-            // A wake-up may follow a Ready pulse at once.
-            Some(ready) if !ready.wake_up && wake_up => {
-                self.candidate = Some(ready);
-                self.accept();
-                return self.wake_up(rise);
+        if let Some(ready) = self.candidate.take() {
+            // A wake-up may follow a Ready pulse at once. Anything else so soon, and both belong to octets.
+            if !ready.wake_up && ready.woken.is_none() && wake_up {
+                self.candidate = Some(Candidate { woken: Some(rise), ..ready });
             }
-            // Too soon: both belong to octets.
-            Some(_) => return,
-            None => {}
+            return;
         }
         let no_ready = self.episode.as_ref().is_some_and(|episode| episode.ready.is_none());
         let ready = no_ready && fall.saturating_sub(rise) >= READY_LEAST && self.quiet >= READY_QUIET;
         if (wake_up && self.quiet >= WAKE_UP_QUIET) || ready {
             let iq = self.iq == Some(true) || self.iq_fall.is_some_and(|iq| iq > rise);
-            self.candidate = Some(Candidate { rise, fall, wake_up, iq });
+            self.candidate = Some(Candidate { rise, fall, wake_up, iq, woken: None });
         }
     }
 
@@ -518,6 +516,9 @@ impl Decoder {
         }
         self.set_ready(Pulse { rise: it.rise, fall: Some(it.fall) });
         self.phase = Phase::Waiting;
+        if let Some(rise) = it.woken {
+            return self.wake_up(rise);
+        }
         // What came meanwhile.
         if let Some(rise) = self.iq_rise.filter(|rise| *rise > it.fall) {
             self.first_rise(rise);

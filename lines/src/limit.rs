@@ -118,11 +118,14 @@ pub enum Verify {
     Measured,
     /// With sources, loads and instruments.
     Bench,
+    /// By reading a parameter.
+    Read,
 }
 
 impl Verify {
-    /// Both with their names in the file.
-    pub const ALL: [(Verify, &'static str); 2] = [(Verify::Measured, "measured"), (Verify::Bench, "bench")];
+    /// All of them with their names in the file.
+    pub const ALL: [(Verify, &'static str); 3] =
+        [(Verify::Measured, "measured"), (Verify::Bench, "bench"), (Verify::Read, "read")];
 
     /// Its name.
     pub fn name(self) -> &'static str {
@@ -143,6 +146,8 @@ pub struct Row {
     pub max_from: Option<String>,
     /// Clause and table.
     pub clause: String,
+    /// Printed by the base standard only: recorded, never judged.
+    pub base: bool,
     /// What it means when a value lies outside.
     pub outside: Outside,
 }
@@ -162,8 +167,6 @@ pub struct Limit {
     pub v1_1: Option<Row>,
     /// IEC 61139-2:2022; `None`: not in this edition.
     pub iec2022: Option<Row>,
-    /// Printed by the base standard only: it never judges.
-    pub base: bool,
     /// Open points whose reading is in force: L03.
     pub open: Vec<String>,
     /// Which value judges, and why, where that is not plain.
@@ -183,12 +186,10 @@ impl Limit {
         }
     }
 
-    /// What it means in an edition when a value lies outside; never a failure for a value of the base standard.
+    /// What it means in an edition when a value lies outside; nothing follows from a value of the base standard, nor where
+    /// the edition has no such limit.
     pub fn outside(&self, edition: Edition) -> Outside {
-        match self.row(edition) {
-            Some(row) if !(self.base && row.outside == Outside::Fail) => row.outside,
-            _ => Outside::Recorded,
-        }
+        self.row(edition).filter(|row| !row.base).map_or(Outside::Recorded, |row| row.outside)
     }
 
     /// The bounds of an edition for a measured value, in nanoseconds or parts of 1e9; `None` where lines do not show it or
