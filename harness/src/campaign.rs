@@ -203,7 +203,7 @@ impl Run<'_> {
         let mut session = Session::new(dut.as_mut(), description, &profile, setups, self.interrupted);
         session.links.iter_mut().for_each(|link| link.case_alone = self.judges == Judges::CaseAlone);
         let judging = Judging {
-            limits: &self.library.limits,
+            limits: &self.library.limits.limits,
             clauses: self.clauses(planned),
             demands: self.demands(planned),
             shown: self.library.tolerances.shown(),

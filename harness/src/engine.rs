@@ -16,8 +16,8 @@ use crate::session::{Reply, Session, Stop};
 use crate::stopwatch::Stopwatch;
 use crate::tester::Tester;
 use fsct_adapters::{DutError, Fault, Mode, Octets, Pco, Role, Service, Stimulus};
-use fsct_protocol::fsp::{INDEX_PROTOCOL, INDEX_VERIFY, Protocol};
 use fsct_lines::{Limits, Quantity};
+use fsct_protocol::fsp::{INDEX_PROTOCOL, INDEX_VERIFY, Protocol};
 use fsct_reports::measurement::Measurement;
 use fsct_reports::record::{Execution, Reason, StepRecord, Verdict};
 
@@ -90,9 +90,8 @@ impl<'s, 'd> Engine<'s, 'd> {
 
     /// Runs start condition, steps and liveness check.
     pub fn run(mut self, start: &[Step], start_name: &str, steps: &[Step]) -> Outcome {
-        let timed = |wanted: &Wanted| {
-            matches!(wanted, Wanted::Quantity(Quantity::DeviceWatchdog | Quantity::MasterWatchdog))
-        };
+        let timed =
+            |wanted: &Wanted| matches!(wanted, Wanted::Quantity(Quantity::DeviceWatchdog | Quantity::MasterWatchdog));
         if steps.iter().flat_map(|step| &step.measure).any(timed) {
             self.session.links.iter_mut().for_each(|link| link.stopwatch = Some(Stopwatch::default()));
         }

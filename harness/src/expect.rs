@@ -50,7 +50,9 @@ pub fn judge(expectation: &Expectation, before: &Before, session: &Session<'_>, 
         }
         Key::Reply => reply(expectation, session),
         Key::Event => event(expectation, session),
-        Key::Mode | Key::PortPower | Key::WakeUp | Key::Record => port::of_port(expectation, session),
+        Key::Mode | Key::PortPower | Key::Cq | Key::Iq | Key::WakeUp | Key::Record => {
+            port::of_port(expectation, session)
+        }
         Key::Result | Key::Reference | Key::Length | Key::Block | Key::Field(_) => {
             port::of_result(expectation, session)
         }

@@ -1,8 +1,9 @@
 //! The lines of a link while a case runs: what a DUT and the tester do to them goes into the decoder of `fsct-lines`, and
 //! comes out as measured values.
 
-use fsct_adapters::Line;
+use fsct_adapters::{Line, Role};
 use fsct_lines::{Decoder, Edge, Episode, Levels, Measured, Quantity, WakeUps, measure};
+use std::collections::BTreeMap;
 
 /// The lines.
 #[derive(Debug)]
@@ -14,6 +15,8 @@ pub struct Lines {
     woken: Vec<Measured>,
     /// Level of C/Q.
     cq: bool,
+    /// Level of I/Q.
+    iq: bool,
     /// The latest wake-up.
     woken_at: Option<u64>,
 }
@@ -26,6 +29,7 @@ impl Default for Lines {
             ended: Vec::new(),
             woken: Vec::new(),
             cq: false,
+            iq: false,
             woken_at: None,
         }
     }
@@ -37,7 +41,8 @@ impl Lines {
         match line {
             Line::Cq => self.cq = level,
             Line::WakeUp => self.woken_at = Some(at),
-            Line::Power | Line::Iq => {}
+            Line::Iq => self.iq = level,
+            Line::Power => {}
         }
         self.ended.extend(self.decoder.edge(Edge { at, line, level }));
     }
@@ -45,6 +50,11 @@ impl Lines {
     /// Whether C/Q is high.
     pub fn cq(&self) -> bool {
         self.cq
+    }
+
+    /// Whether I/Q is high.
+    pub fn iq(&self) -> bool {
+        self.iq
     }
 
     /// When the latest wake-up was.
@@ -79,6 +89,25 @@ impl Lines {
             episode.ossd = self.decoder.ossd().copied();
         }
         self.ended.iter().cloned().chain(current).collect()
+    }
+
+    /// How often each transition of the DL-mode handlers was taken that the lines show: T13 of an FS-Device (Table 11), T20
+    /// to T22 of an FS-Master port with safety (Table 10).
+    pub fn taken(&mut self, role: Role, now: u64) -> impl Iterator<Item = (u8, u64)> {
+        let mut counts = BTreeMap::new();
+        let mut add = |number: u8, times: bool| *counts.entry(number).or_insert(0) += u64::from(times);
+        for episode in self.episodes(now) {
+            let ready = episode.ready.is_some_and(|pulse| pulse.fall.is_some());
+            match role {
+                Role::Device => add(13, ready),
+                Role::Master => {
+                    add(20, episode.on.is_some());
+                    add(21, ready && episode.wake_ups.count > 0);
+                    add(22, !ready && episode.wake_ups.count == 0 && episode.next_on.is_some());
+                }
+            }
+        }
+        counts.into_iter().filter(|(_, count)| *count > 0)
     }
 
     /// Everything the lines have shown of a quantity so far.

@@ -8,6 +8,7 @@ use crate::stopwatch::Stopwatch;
 use fsct_adapters::{Identity, Line, Mode, Octets, Role, Seen, Service};
 use fsct_protocol::Edition;
 use fsct_protocol::fsp::INDEX_VERIFY;
+use fsct_protocol::smi::{FS_PORT_CONFIG_LIST, MIXEDSAFETYCOM, SAFETYCOM};
 use fsct_protocol::spdu::View;
 use std::collections::VecDeque;
 
@@ -267,6 +268,14 @@ impl Link {
         if let Oracle::Master(oracle) = &mut self.oracle {
             oracle.stop();
         }
+    }
+
+    /// Whether the port is configured as SAFETYCOM or MIXEDSAFETYCOM.
+    pub fn is_safety(&self) -> bool {
+        let edition = self.oracle.setup().edition;
+        let at = FS_PORT_CONFIG_LIST.field("PortMode").and_then(|field| field.offset(edition));
+        let mode = at.and_then(|at| self.configured.get(at));
+        mode.is_some_and(|mode| [SAFETYCOM, MIXEDSAFETYCOM].contains(mode))
     }
 
     /// The port is in OSSDe mode no more.

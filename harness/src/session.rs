@@ -493,12 +493,17 @@ impl<'d> Session<'d> {
     }
 
     /// How often each transition was taken on any port, by the names of the record.
-    pub fn taken(&self) -> BTreeMap<String, u64> {
+    pub fn taken(&mut self) -> BTreeMap<String, u64> {
+        let (role, now) = (self.role(), self.now);
         let mut sum = BTreeMap::new();
-        for link in &self.links {
+        for link in &mut self.links {
+            // Only a port with safety waits for a Ready pulse.
+            let safety = role == Role::Device || link.is_safety();
+            let lines = link.lines.taken(role, now).filter(|_| safety);
+            let lines: Vec<_> = lines.map(|(number, count)| (format!("DL T{number}"), count)).collect();
             let scl = link.oracle.taken().into_iter().map(|(number, count)| (format!("T{number}"), count));
             let ossde = link.ossde_taken().map(|(number, count)| (format!("OSSDe T{number}"), count));
-            scl.chain(ossde).for_each(|(name, count)| *sum.entry(name).or_default() += count);
+            scl.chain(ossde).chain(lines).for_each(|(name, count)| *sum.entry(name).or_default() += count);
         }
         sum
     }

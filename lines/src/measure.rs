@@ -278,6 +278,28 @@ impl Claim {
         Claim::ALL.into_iter().find(|entry| entry.0 == self).map_or("", |entry| entry.1)
     }
 
+    /// The claim in words.
+    pub fn about(self) -> &'static str {
+        match self {
+            Claim::IqOff => "I/Q is OFF from power-on to the end of the Ready pulse",
+            Claim::OneReadyPulse => "one Ready pulse on C/Q, and no other pulse before a wake-up or OSSD mode",
+            Claim::OffUntilOssd => "both lines are OFF from the end of the Ready pulse for t_RO at least",
+            Claim::NoEarlyWakeUp => "no wake-up before the Ready pulse",
+            Claim::PowerCycle => "without a Ready pulse L+ goes OFF and ON again",
+        }
+    }
+
+    /// Clause it is from.
+    pub fn clause(self) -> &'static str {
+        match self {
+            Claim::IqOff => "5.3.3, Figure 21",
+            Claim::OneReadyPulse => "5.3.3, 7.3 Table 11 T13",
+            Claim::OffUntilOssd => "5.4 Table 7, Figure 21",
+            Claim::NoEarlyWakeUp => "7.2 Table 10 T20 and T21",
+            Claim::PowerCycle => "7.2 Table 10 T22",
+        }
+    }
+
     /// What the episode says to it.
     pub fn ask(self, episode: &Episode, given: Given) -> Answer {
         match self {

@@ -70,6 +70,8 @@ pub enum Covered {
     Scl(u8),
     /// Of the OSSDe qualifier handler: T1..T6 (Table 43).
     Ossde(u8),
+    /// Of the DL-mode handler: T13 of an FS-Device (Table 11), T20..T22 of an FS-Master (Table 10).
+    Dl(u8),
 }
 
 impl std::fmt::Display for Covered {
@@ -77,6 +79,7 @@ impl std::fmt::Display for Covered {
         match self {
             Covered::Scl(number) => write!(f, "T{number}"),
             Covered::Ossde(number) => write!(f, "OSSDe T{number}"),
+            Covered::Dl(number) => write!(f, "DL T{number}"),
         }
     }
 }
@@ -159,15 +162,17 @@ fn case(
     }
     let mut transitions = Vec::new();
     for (text, at) in covers {
-        match text.strip_prefix('T').and_then(|number| number.parse().ok()) {
-            Some(number @ (1..=14 | 20..=31)) => transitions.push(Covered::Scl(number)),
-            _ => match text.strip_prefix("OSSDe T").and_then(|number| number.parse().ok()) {
-                Some(number @ 1..=6) => transitions.push(Covered::Ossde(number)),
-                _ => problem(
-                    &at,
-                    format!("`{text}` is no transition: T1 to T14, T20 to T31 and OSSDe T1 to OSSDe T6 are"),
+        let number = |prefix: &str| text.strip_prefix(prefix).and_then(|number| number.parse().ok());
+        match (number("T"), number("OSSDe T"), number("DL T")) {
+            (Some(number @ (1..=14 | 20..=31)), _, _) => transitions.push(Covered::Scl(number)),
+            (_, Some(number @ 1..=6), _) => transitions.push(Covered::Ossde(number)),
+            (_, _, Some(number @ (13 | 20..=22))) => transitions.push(Covered::Dl(number)),
+            _ => problem(
+                &at,
+                format!(
+                    "`{text}` is no transition: T1 to T14, T20 to T31, OSSDe T1 to OSSDe T6, DL T13 and DL T20 to DL T22 are"
                 ),
-            },
+            ),
         }
     }
     let sweep = axes.map(|node| sweep::axes(source, node, problems)).unwrap_or_default();

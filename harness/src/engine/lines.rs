@@ -150,14 +150,8 @@ impl Engine<'_, '_> {
             ossd_not_before: bounds(Quantity::ReadyToOssd).and_then(|bounds| bounds.min),
             wait_at_most: bounds(Quantity::WaitForReady).and_then(|bounds| bounds.max),
         };
-        let answers: Vec<Answer> = self
-            .session
-            .link_mut()
-            .lines
-            .episodes(now)
-            .iter()
-            .map(|episode| claim.ask(episode, given))
-            .collect();
+        let answers: Vec<Answer> =
+            self.session.link_mut().lines.episodes(now).iter().map(|episode| claim.ask(episode, given)).collect();
         self.checks += 1;
         let broken = answers.iter().find_map(|answer| match answer {
             Answer::Broken(at) => Some(*at),

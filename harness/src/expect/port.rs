@@ -18,6 +18,8 @@ pub fn of_port(expectation: &Expectation, session: &Session<'_>) -> Judged {
     match (expectation.key, &expectation.value) {
         (Key::Mode, Expected::Mode(mode)) => compare(mode.to_string(), link.mode.to_string()),
         (Key::PortPower, _) => compare(number(expectation).to_string(), u8::from(link.port_power).to_string()),
+        (Key::Cq, _) => compare(number(expectation).to_string(), u8::from(link.lines.cq()).to_string()),
+        (Key::Iq, _) => compare(number(expectation).to_string(), u8::from(link.lines.iq()).to_string()),
         (Key::WakeUp, _) => compare(number(expectation).to_string(), link.wake_ups.to_string()),
         (_, expected) => {
             let written: Vec<String> =

@@ -130,7 +130,12 @@ impl Target<'_> {
         }
         let Bench { dut, description, .. } = bench;
         let mut session = Session::new(dut.as_mut(), description, self.profile, setups, self.interrupted);
-        let judging = Judging { clauses: String::new(), demands: true, shown: self.library.tolerances.shown() };
+        let judging = Judging {
+            limits: &self.library.limits.limits,
+            clauses: String::new(),
+            demands: true,
+            shown: self.library.tolerances.shown(),
+        };
         let (outcome, mut testers) = Engine::new(&mut session, testers, judging).reach(&start, "operate");
         let reason = outcome.reasons.first();
         let went = match outcome.execution {

@@ -104,9 +104,14 @@ fn values(key: Key) -> (Words, Option<u32>, bool) {
         Key::DcountI => (&[(Expected::Mirror, "mirror"), (Expected::Unchanged, "unchanged")], Some(7), false),
         Key::Mcount => (&[(Expected::Next, "next"), (Expected::Unchanged, "unchanged")], Some(7), false),
         Key::SdSet | Key::DcommErr | Key::Dtimeout | Key::SetSdDc | Key::ChFAckReqDc => (&[], BITS, false),
-        Key::SetSd | Key::ChFAckReq | Key::SdsetS | Key::ChFAckReqS | Key::FaultsS | Key::PortPower => {
-            (&[], BITS, false)
-        }
+        Key::SetSd
+        | Key::ChFAckReq
+        | Key::SdsetS
+        | Key::ChFAckReqS
+        | Key::FaultsS
+        | Key::PortPower
+        | Key::Cq
+        | Key::Iq => (&[], BITS, false),
         Key::Qualifier => (&[(Expected::Number(1), "GOOD"), (Expected::Number(0), "BAD")], None, false),
         Key::Pdin | Key::Pdout => (&[(Expected::Live, "live"), (Expected::Safe, "safe")], None, true),
         Key::PortNum => (&[(Expected::Right, "right")], Some(0xFF), false),

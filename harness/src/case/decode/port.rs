@@ -5,7 +5,7 @@ use crate::case::model::*;
 use crate::problem::{Problem, suggestion};
 use crate::tree::{self, Fields};
 use crate::yaml::{self, Node};
-use fsct_adapters::{Line, SmiService};
+use fsct_adapters::{Line, Role, SmiService};
 use fsct_protocol::smi::FS_PORT_CONFIG_LIST;
 
 const LEVELS: &[(bool, &str)] = &[(false, "0"), (true, "1")];

@@ -62,6 +62,10 @@ pub enum Key {
     Mode,
     /// L+ of a port.
     PortPower,
+    /// Level of C/Q.
+    Cq,
+    /// Level of I/Q.
+    Iq,
     /// Wake-up pulses in this step.
     WakeUp,
     /// What was written to 0x4202 in this step.
@@ -88,7 +92,7 @@ const BOTH: &[Role] = &[Role::Device, Role::Master];
 
 impl Key {
     /// All keys as written in cases, and the side they are for; fields of ArgBlocks are `block.` and their name.
-    pub const ALL: [(Key, &'static str, &'static [Role]); 31] = [
+    pub const ALL: [(Key, &'static str, &'static [Role]); 33] = [
         (Key::DcountI, "DCount_i", DEVICE),
         (Key::SdSet, "SDset", DEVICE),
         (Key::DcommErr, "DCommErr", DEVICE),
@@ -110,8 +114,10 @@ impl Key {
         (Key::ChFAckReqS, "app.ChFAckReq_S", MASTER),
         (Key::FaultsS, "app.FAULTS_S", MASTER),
         (Key::Qualifier, "app.qualifier", MASTER),
-        (Key::Mode, "mode", MASTER),
+        (Key::Mode, "mode", BOTH),
         (Key::PortPower, "L+", MASTER),
+        (Key::Cq, "C/Q", DEVICE),
+        (Key::Iq, "I/Q", DEVICE),
         (Key::WakeUp, "wake-up", MASTER),
         (Key::Record, "record", MASTER),
         (Key::Reply, "reply", DEVICE),
@@ -139,6 +145,8 @@ impl Key {
                 | Key::Nsr
                 | Key::Mode
                 | Key::PortPower
+                | Key::Cq
+                | Key::Iq
                 | Key::WakeUp
                 | Key::Record
                 | Key::Result
@@ -165,6 +173,7 @@ impl Key {
             Key::PdinM | Key::SdsetS | Key::ChFAckReqS | Key::FaultsS => "11.3.2 Table 28",
             Key::Qualifier => "11.11.4 Table 42",
             Key::Mode | Key::PortPower | Key::WakeUp => "7.2 Table 10",
+            Key::Cq | Key::Iq => "5.3.2.1 Table 4",
             Key::Record => "10.4.3.6, A.2.10",
             Key::Reply => "A.1 Table A.1",
             Key::Result | Key::Reference | Key::Length => "10.2",
