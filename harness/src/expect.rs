@@ -7,6 +7,7 @@ use crate::session::{Reply, Session};
 use crate::tester::Tester;
 use crate::trace::hex;
 use fsct_adapters::{Octets, Pco, Role};
+use fsct_protocol::Edition;
 use fsct_protocol::spdu::{View, succ};
 use fsct_reports::record::Check;
 
@@ -147,10 +148,27 @@ fn event(expectation: &Expectation, session: &Session<'_>) -> Judged {
     let seen = if seen.is_empty() { "no Event".to_owned() } else { seen.join(", ") };
     match expectation.value {
         Expected::None => ("no Event".to_owned(), seen, session.events.is_empty()),
+        Expected::Unreserved => {
+            let setup = session.setup();
+            let met = !session.events.iter().any(|code| reserved(setup.role, setup.edition, *code));
+            ("no Event with a reserved code".to_owned(), seen, met)
+        }
         _ => {
             let wanted = number(expectation);
             let met = session.events.iter().any(|code| u32::from(*code) == wanted);
             (format!("Event 0x{wanted:04X}"), seen, met)
+        }
+    }
+}
+
+/// Whether Annex B reserves an EventCode that a Device (Table B.1) or an FS-Master (Table B.2) raises itself.
+fn reserved(role: Role, edition: Edition, code: u16) -> bool {
+    match (role, edition) {
+        (Role::Device, Edition::V1_1) => matches!(code, 0xB00A..=0xB0FF),
+        (Role::Device, Edition::Iec2022) => matches!(code, 0xB00B..=0xB0FF),
+        (Role::Master, Edition::V1_1) => matches!(code, 0xB007 | 0xB008 | 0xB00A..=0xB0FF),
+        (Role::Master, Edition::Iec2022) => {
+            matches!(code, 0x2004 | 0x2007 | 0x2008 | 0x200A..=0x20EF | 0x20F1..=0x20FF)
         }
     }
 }
@@ -275,4 +293,39 @@ fn reply(expectation: &Expectation, session: &Session<'_>) -> Judged {
     };
     let met = expected == observed;
     (expected, observed, met)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::reserved;
+    use fsct_adapters::Role;
+    use fsct_protocol::Edition;
+    use rstest::rstest;
+
+    #[rstest]
+    #[case(Role::Master, Edition::V1_1, 0xB003..=0xB006, false)]
+    #[case(Role::Master, Edition::V1_1, 0xB007..=0xB008, true)]
+    #[case(Role::Master, Edition::V1_1, 0xB009..=0xB009, false)]
+    #[case(Role::Master, Edition::V1_1, 0xB00A..=0xB0FF, true)]
+    #[case(Role::Master, Edition::V1_1, 0xB100..=0xB100, false)]
+    #[case(Role::Master, Edition::Iec2022, 0x2003..=0x2003, false)]
+    #[case(Role::Master, Edition::Iec2022, 0x2004..=0x2004, true)]
+    #[case(Role::Master, Edition::Iec2022, 0x2005..=0x2006, false)]
+    #[case(Role::Master, Edition::Iec2022, 0x2007..=0x2008, true)]
+    #[case(Role::Master, Edition::Iec2022, 0x2009..=0x2009, false)]
+    #[case(Role::Master, Edition::Iec2022, 0x200A..=0x20EF, true)]
+    #[case(Role::Master, Edition::Iec2022, 0x20F0..=0x20F0, false)]
+    #[case(Role::Master, Edition::Iec2022, 0x20F1..=0x20FF, true)]
+    #[case(Role::Device, Edition::V1_1, 0xB000..=0xB009, false)]
+    #[case(Role::Device, Edition::V1_1, 0xB00A..=0xB0FF, true)]
+    #[case(Role::Device, Edition::Iec2022, 0xB000..=0xB00A, false)]
+    #[case(Role::Device, Edition::Iec2022, 0xB00B..=0xB0FF, true)]
+    fn reserved_codes_are_those_of_the_tables(
+        #[case] role: Role,
+        #[case] edition: Edition,
+        #[case] codes: std::ops::RangeInclusive<u16>,
+        #[case] wanted: bool,
+    ) {
+        assert!(codes.into_iter().all(|code| reserved(role, edition, code) == wanted));
+    }
 }

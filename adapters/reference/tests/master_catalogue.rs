@@ -171,8 +171,10 @@ fn signatures(variant: Variant, options: MasterOptions) -> Vec<(u64, Seen)> {
 /// An Event, loss of communication, switching off and on.
 fn ports(variant: Variant, options: MasterOptions) -> Vec<(u64, Seen)> {
     let mut tour = operate(variant, options);
-    tour.bench.apply(&[Stimulus::Raise { port: PORT, code: 0x5010, qualifier: 0xF4 }]);
-    tour.note();
+    for code in [0x5010, 0xB0FF] {
+        tour.bench.apply(&[Stimulus::Raise { port: PORT, code, qualifier: 0xF4 }]);
+        tour.note();
+    }
     services(&mut tour);
     tour.bench.plug(None);
     tour.note();
@@ -193,7 +195,13 @@ fn ports(variant: Variant, options: MasterOptions) -> Vec<(u64, Seen)> {
     tour.note();
     tour.bench.advance(20 * S);
     tour.note();
+    tour.smi(SmiService::PortPowerOffOn, PORT, 0xFFF0, &[(id >> 8) as u8, id as u8, 0, 0xFF, 0xFF]);
     tour.all
+}
+
+/// Fewer octets of PDout_M than of PDin_M.
+fn sizes(variant: Variant, options: MasterOptions) -> Vec<(u64, Seen)> {
+    operate(Variant { pd_out: 1, ..variant }, options).all
 }
 
 /// Each service with a right and some wrong requests.
@@ -221,13 +229,17 @@ fn services(tour: &mut Tour) {
 /// The start of a port with these fields changed in its configuration, on a Device of another VendorID too.
 fn starts(variant: Variant, options: MasterOptions) -> Vec<(u64, Seen)> {
     let mut all = Vec::new();
-    for index in 0..7 {
+    for index in 0..11 {
         let mut wanted = list(variant);
         match index {
             1 => wanted.authenticity.authenticity_2 ^= 1,
             2 => wanted.authenticity.port = 1,
             3 => wanted.protocol.watchdog_ms = 0,
             4 => wanted.protocol.version = 2,
+            7 => wanted.cycle_time = wanted.identity().min_cycle_time - 1,
+            8 => wanted.port_mode = 5,
+            9 => wanted.vendor_id = 0,
+            10 => (wanted.port_mode, wanted.nsr) = (50, (32 - wanted.spdu_in, 32 - wanted.spdu_out)),
             _ => {}
         }
         let mut octets = wanted.octets();
@@ -324,10 +336,29 @@ fn a_result_may_lead_astray() {
     assert_eq!(LEADS_ASTRAY.map(|which| back(mutant(which))), [(PORT, 0), (1, CLIENT)]);
 }
 
+/// No list of the bench is taken by it.
+const TAKES_NO_LIST: MasterMutant = MasterMutant::ConfigLengthOfOtherEdition;
+
+#[test]
+fn a_list_has_the_length_of_its_edition() {
+    for edition in [Edition::V1_1, Edition::Iec2022] {
+        let variant = of(edition);
+        let taken = |options: MasterOptions, octets: &[u8]| {
+            Bench::factory_with(variant, options).smi(SmiService::PortConfiguration, PORT, octets).positive
+        };
+        let right = list(variant).octets();
+        let mut other = right.clone();
+        other.resize(if edition == Edition::V1_1 { 50 } else { 48 }, 0);
+        let of_length = |options: MasterOptions| (taken(options, &right), taken(options, &other));
+        assert_eq!(of_length(MasterOptions::default()), (true, false), "{edition}");
+        assert_eq!(of_length(mutant(TAKES_NO_LIST)), (false, true), "{edition}");
+    }
+}
+
 #[test]
 fn each_mutant_shows() {
     type Look = fn(Variant, MasterOptions) -> Vec<(u64, Seen)>;
-    let looks: [Look; 8] = [regular, errors, timeout_behind_1, signatures, ports, starts, mixed, ossde];
+    let looks: [Look; 9] = [regular, errors, timeout_behind_1, signatures, ports, sizes, starts, mixed, ossde];
     let variants = |look: usize| {
         let pd = |mode: ProtMode| if look == 3 { mode.max_pd() as u8 } else { 3 };
         let of = move |edition, mode: ProtMode| variant(edition, mode, pd(mode));
@@ -340,7 +371,7 @@ fn each_mutant_shows() {
         .collect();
     let hidden: Vec<&str> = MasterMutant::ALL
         .iter()
-        .filter(|which| !LEADS_ASTRAY.contains(which))
+        .filter(|which| !LEADS_ASTRAY.contains(which) && **which != TAKES_NO_LIST)
         .filter(|which| {
             let wrong = (0..looks.len())
                 .flat_map(|look| variants(look).concat().into_iter().map(move |variant| (look, variant)))

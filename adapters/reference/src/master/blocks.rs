@@ -28,6 +28,8 @@ pub mod id {
 
 /// PortModes of FSPortConfigList.
 pub mod port_mode {
+    use fsct_protocol::Edition;
+
     /// DEACTIVATED.
     pub const DEACTIVATED: u8 = 0;
     /// IOL_MANUAL.
@@ -44,6 +46,15 @@ pub mod port_mode {
     pub const MIXEDSAFETYCOM: u8 = 50;
     /// OSSDE.
     pub const OSSDE: u8 = 51;
+
+    /// Whether an edition has this one.
+    pub fn exists(edition: Edition, port_mode: u8) -> bool {
+        match port_mode {
+            DEACTIVATED | IOL_MANUAL | IOL_AUTOSTART | DI_CQ | SAFETYCOM | MIXEDSAFETYCOM | OSSDE => true,
+            DO_CQ => edition == Edition::Iec2022,
+            _ => false,
+        }
+    }
 }
 
 /// A port configuration as it was received.
@@ -118,7 +129,12 @@ impl PortConfig {
     pub fn read(edition: Edition, octets: &[u8], mutant: Option<MasterMutant>) -> Option<PortConfig> {
         let mut reader = Reader(octets);
         let _id = reader.take(2);
-        let port_mode = reader.octet();
+        let port_mode = match (reader.octet(), mutant) {
+            (unknown, Some(MasterMutant::UnknownPortModeIsSafetycom)) if !port_mode::exists(edition, unknown) => {
+                port_mode::SAFETYCOM
+            }
+            (port_mode, _) => port_mode,
+        };
         let validation = reader.octet();
         let iq_behavior = reader.octet();
         let cycle_time = reader.octet();
@@ -167,25 +183,30 @@ impl PortConfig {
             spdu_in,
             spdu_out,
         };
-        let plausible = config.in_range(edition, iq_behavior, io_desc_version, (time_to_ready, min_shut_down));
+        let times = (time_to_ready, min_shut_down);
+        let plausible = config.in_range(edition, iq_behavior, io_desc_version, times, mutant);
         plausible.then_some(config)
     }
 
     /// What a PortMode does not care for may have any value. Whether the FSP parameters are right is for the start of the SCL.
-    fn in_range(&self, edition: Edition, iq_behavior: u8, io_desc_version: u8, times: (u32, u32)) -> bool {
+    fn in_range(
+        &self,
+        edition: Edition,
+        iq_behavior: u8,
+        io_desc_version: u8,
+        times: (u32, u32),
+        mutant: Option<MasterMutant>,
+    ) -> bool {
         use port_mode::*;
-        let known = match self.port_mode {
-            DEACTIVATED | IOL_MANUAL | IOL_AUTOSTART | DI_CQ | SAFETYCOM | MIXEDSAFETYCOM | OSSDE => true,
-            DO_CQ => edition == Edition::Iec2022,
-            _ => false,
-        };
+        let known = exists(edition, self.port_mode);
         let iq = match (self.port_mode, edition) {
             (DEACTIVATED | DI_CQ | DO_CQ, _) | (OSSDE, Edition::Iec2022) => true,
             (_, Edition::V1_1) => matches!(iq_behavior, 0 | 5),
             (_, Edition::Iec2022) => matches!(iq_behavior, 0 | 1 | 5),
         };
         let validated = matches!(self.port_mode, IOL_MANUAL | SAFETYCOM | MIXEDSAFETYCOM);
-        let ids = !validated || self.vendor_id != 0 && (1..=0x00FF_FFFF).contains(&self.device_id);
+        let vendor = self.vendor_id != 0 || mutant == Some(MasterMutant::VendorId0IsWildcard);
+        let ids = !validated || vendor && (1..=0x00FF_FFFF).contains(&self.device_id);
         let backup = !validated || self.validation <= 4;
         let safety = self.is_safety();
         let (time_to_ready, min_shut_down) = times;
@@ -196,11 +217,12 @@ impl PortConfig {
         let nsr = self.port_mode == DEACTIVATED || nsr_in <= 32 && nsr_out <= 32;
         let ossde = self.port_mode != OSSDE || self.spdu_in == 1;
         let described = !safety || io_desc_version == 1;
+        let octets = if mutant == Some(MasterMutant::NsrLimit31) && edition == Edition::V1_1 { 31 } else { 32 };
         let lengths = !safety
             || (4..=31).contains(&self.spdu_in)
                 && (4..=31).contains(&self.spdu_out)
-                && u16::from(self.spdu_in) + u16::from(nsr_in) <= 32
-                && u16::from(self.spdu_out) + u16::from(nsr_out) <= 32;
+                && u16::from(self.spdu_in) + u16::from(nsr_in) <= octets
+                && u16::from(self.spdu_out) + u16::from(nsr_out) <= octets;
         let port = !safety || self.authenticity.port != 0;
         known && iq && ids && backup && waits && nsr && ossde && described && lengths && port
     }

@@ -118,6 +118,10 @@ catalogue! {
             "In the CRC-32 mode only the low 16 bits of the signature are compared."
         LongestPdUnchecked "longest-pd-unchecked", "11.4.7":
             "The signature is not checked where the process data have their greatest length."
+        PdinCutAt16 "pdin-cut-at-16", "11.4.4":
+            "Of PDin_M only the first 16 octets are delivered, the others stay 0."
+        PdinOfPdoutLength "pdin-of-pdout-length", "11.4.4":
+            "PDin_M is delivered with as many octets as PDout_M has."
         WatchdogEarly "watchdog-early", "11.5.5":
             "MTimer expires after three quarters of FSP_Watchdog."
         WatchdogLate "watchdog-late", "11.5.5":
@@ -170,6 +174,16 @@ catalogue! {
             "The SCL starts anew after loss of communication and wants no acknowledgment."
         VendorIdNotCompared "vendor-id-not-compared", "10.3.4":
             "A Device of another VendorID is taken."
+        VendorId0IsWildcard "vendor-id-0-is-wildcard", "10.3.4":
+            "VendorID 0 in the configuration goes with every Device."
+        CycleTimeNotCompared "cycle-time-not-compared", "10.3.3 (v1.1), 10.3.4 (iec2022)":
+            "A PortCycleTime below the MinCycleTime of the Device is taken."
+        UnknownPortModeIsSafetycom "unknown-port-mode-is-safetycom", "10.3.4":
+            "A PortMode that is reserved or not for the edition is taken for SAFETYCOM."
+        NsrLimit31 "nsr-limit-31", "10.3.3 (v1.1)":
+            "In v1.1 an SPDU and the data without safety relevance beside it may have 31 octets at most."
+        ConfigLengthOfOtherEdition "config-length-of-other-edition", "10.3.4":
+            "FSPortConfigList is taken with the length it has in the other edition only."
         AuthentCrcNotChecked "authent-crc-not-checked", "B.2":
             "FSP_AuthentCRC is not checked before the start of the SCL."
         ProtParCrcNotChecked "prot-par-crc-not-checked", "B.2":
@@ -178,6 +192,8 @@ catalogue! {
             "The SCL starts with FSP_Watchdog 0."
         Authenticity2NotCompared "authenticity-2-not-compared", "B.2":
             "FSP_Authenticity2 is not compared with the upper-level system."
+        ArmedNotCompared "armed-not-compared", "10.4.3.1":
+            "The authenticity is compared for commissioning only, not with FSP_TechParCRC other than 0."
         FspPortNotCompared "fsp-port-not-compared", "B.2":
             "In v1.1 FSP_Port is not compared with the number of the port."
         ProtVersionNotChecked "prot-version-not-checked", "11.5.2":
@@ -198,6 +214,10 @@ catalogue! {
             "PortStatusInfo stays at OPERATE while the SCL runs."
         DeviceEventDropped "device-event-dropped", "10.2.1":
             "Events of the Device are not passed on."
+        ReservedEventEvaluated "reserved-event-evaluated", "B.1":
+            "An Event of the FS-Device with a reserved code leads the port back to PREOPERATE."
+        ReservedEventUsed "reserved-event-used", "B.2":
+            "A fault of the SCL is told by an Event with a reserved code."
         DiagNotListed "diag-not-listed", "10.3.5":
             "What is pending is missing in the DiagEntries."
         ArgBlockLengthUnchecked "arg-block-length-unchecked", "10.2.5":
@@ -228,6 +248,12 @@ catalogue! {
             "The supply does not come back by itself after PowerOffTime."
         NoComToldOtherwise "no-com-told-otherwise", "10.2.3":
             "In v1.1 a port without communication is told as OUT_OF_RANGE."
+        ErrorInfoOfIec2022 "error-info-of-iec2022", "10.2.2":
+            "In v1.1 a Result(-) carries the ErrorTypes of iec2022."
+        PowerOffTimeSigned "power-off-time-signed", "10.2.1":
+            "A PowerOffTime above 32767 ms is taken for a negative one and refused."
+        PowerOffOnOfOtherEdition "power-off-on-of-other-edition", "10.2.1":
+            "SMI_PortPowerOffOn knows the ArgBlockID of the other edition only."
         OssdeStartWantsAcknowledgment "ossde-start-wants-acknowledgment", "11.11.5 Table 43 T1":
             "A healthy start of an OSSDe port asks for the acknowledgment."
         OssdeAskedWhileFault "ossde-asked-while-fault", "11.11.5 Table 43 T2":

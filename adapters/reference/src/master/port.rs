@@ -373,9 +373,12 @@ impl PortUnit {
         let Some(config) = &self.config else { return };
         let manual = config.port_mode != port_mode::IOL_AUTOSTART;
         let validated = manual && (1..=4).contains(&config.validation);
-        let other_vendor = config.vendor_id != device.vendor_id && !self.is(MasterMutant::VendorIdNotCompared);
+        let wildcard = config.vendor_id == 0 && self.is(MasterMutant::VendorId0IsWildcard);
+        let vendor_compared = !wildcard && !self.is(MasterMutant::VendorIdNotCompared);
+        let other_vendor = vendor_compared && config.vendor_id != device.vendor_id;
         let other = validated && (other_vendor || config.device_id != device.device_id);
-        let too_fast = manual && config.cycle_time != 0 && config.cycle_time < device.min_cycle_time;
+        let cycle_compared = manual && config.cycle_time != 0 && !self.is(MasterMutant::CycleTimeNotCompared);
+        let too_fast = cycle_compared && config.cycle_time < device.min_cycle_time;
         let (safety, record) = (config.is_safety(), config.record.clone());
         if !self.is(MasterMutant::RecordInStartup) {
             self.set_mode(Mode::Preoperate, seen);

@@ -85,7 +85,7 @@ impl FsMaster {
     /// Carries out a service and reports its result.
     pub(super) fn smi(&mut self, request: &SmiRequest, seen: &mut Sink<'_>) {
         let edition = self.variant.edition;
-        let shape = shape(edition, request.service);
+        let shape = self.shape(request.service);
         let outcome = self.checked(request, &shape).and_then(|()| self.serve(request, &shape, seen));
         if outcome == Err(Refusal::WaitsForDevice) {
             return seen.push(Seen::Unsupported);
@@ -114,6 +114,21 @@ impl FsMaster {
         seen.push(Seen::Smi(Box::new(SmiResult { port, client_id, positive, reference, length, octets })));
     }
 
+    fn shape(&self, service: SmiService) -> Shape {
+        let right = shape(self.variant.edition, service);
+        let other = || match self.variant.edition {
+            Edition::V1_1 => shape(Edition::Iec2022, service),
+            Edition::Iec2022 => shape(Edition::V1_1, service),
+        };
+        match (self.options.mutant, service) {
+            (Some(MasterMutant::PowerOffOnOfOtherEdition), SmiService::PortPowerOffOn) => other(),
+            (Some(MasterMutant::ConfigLengthOfOtherEdition), SmiService::PortConfiguration) => {
+                Shape { octets: other().octets, ..right }
+            }
+            _ => right,
+        }
+    }
+
     fn is(&self, mutant: MasterMutant) -> bool {
         self.options.mutant == Some(mutant)
     }
@@ -127,6 +142,7 @@ impl FsMaster {
             (Edition::V1_1, Refusal::DeviceNotInOperate) if self.is(MasterMutant::NoComToldOtherwise) => {
                 error_info::OUT_OF_RANGE
             }
+            (Edition::V1_1, refusal) if self.is(MasterMutant::ErrorInfoOfIec2022) => refusal.number(Edition::Iec2022),
             (edition, refusal) => refusal.number(edition),
         }
     }
@@ -215,6 +231,9 @@ impl FsMaster {
                     _ => return Err(Refusal::ArgBlockLengthInvalid),
                 };
                 match (mode, time) {
+                    (0, 0x8000..) if is(MasterMutant::PowerOffTimeSigned) => {
+                        return Err(Refusal::ArgBlockInconsistent);
+                    }
                     (0, 1..) => port.switch(now, false, Some(time), seen),
                     (1, _) => port.switch(now, false, None, seen),
                     (2, _) => port.switch(now, true, None, seen),

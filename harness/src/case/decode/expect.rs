@@ -146,7 +146,7 @@ fn values(key: Key) -> (Words, Option<u32>, bool) {
             None,
             true,
         ),
-        Key::Event => (&[(Expected::None, "none")], Some(0xFFFF), false),
+        Key::Event => (&[(Expected::None, "none"), (Expected::Unreserved, "unreserved")], Some(0xFFFF), false),
         Key::Length => (&[(Expected::Right, "right")], Some(0xFFFF), false),
         Key::Reference => (&[], Some(0xFFFF), false),
         Key::Nsr => (&[], None, true),

@@ -216,6 +216,8 @@ pub enum Expected {
     Snapshot,
     /// The length of what came.
     Right,
+    /// EventCodes that Annex B does not reserve, or no Event at all.
+    Unreserved,
     /// Nothing.
     None,
     /// One of these results.

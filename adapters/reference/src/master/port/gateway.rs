@@ -18,6 +18,9 @@ const TYPE: u8 = 0x30;
 const TYPE_WARNING: u8 = 0x20;
 const TYPE_ERROR: u8 = 0x30;
 
+/// EventCodes of an FS-Device that are reserved in both editions (Table B.1).
+const RESERVED_OF_DEVICE: std::ops::RangeInclusive<u16> = 0xB00B..=0xB0FF;
+
 /// PortStatusInfo (10.3.5).
 mod info {
     /// NO_DEVICE.
@@ -58,6 +61,10 @@ impl PortUnit {
             _ => {}
         }
         seen.push(Seen::Indication { port: self.number, source: Source::Device, qualifier, code });
+        if self.is(MasterMutant::ReservedEventEvaluated) && RESERVED_OF_DEVICE.contains(&code) {
+            self.phase = Phase::Fault;
+            self.set_mode(Mode::Preoperate, seen);
+        }
     }
 
     /// A DiagEntry, once.
@@ -124,9 +131,25 @@ impl PortUnit {
     }
 
     pub(super) fn show_scl(&mut self, seen: &mut Sink<'_>) {
-        if let Some(outputs) = self.scl.as_ref().map(|scl| *scl.outputs()) {
-            self.show(outputs, seen);
+        let Some(mut outputs) = self.scl.as_ref().map(|scl| *scl.outputs()) else { return };
+        outputs.pd_in = self.delivered(outputs.pd_in);
+        let fault = outputs.faults_s && !self.outputs.faults_s;
+        self.show(outputs, seen);
+        if fault && self.is(MasterMutant::ReservedEventUsed) {
+            let reserved = if self.edition == Edition::V1_1 { 0xB00A } else { 0x200A };
+            self.port_event(reserved, seen);
         }
+    }
+
+    /// PDin_M as the gateway gets it from the SCL.
+    fn delivered(&self, pd_in: Pd) -> Pd {
+        let mut octets = pd_in.octets().to_vec();
+        match self.mutant {
+            Some(MasterMutant::PdinCutAt16) => octets.iter_mut().skip(16).for_each(|octet| *octet = 0),
+            Some(MasterMutant::PdinOfPdoutLength) => octets.resize(self.inputs.pd_out.octets().len(), 0),
+            _ => return pd_in,
+        }
+        Pd::new(&octets).unwrap_or(pd_in)
     }
 
     pub(super) fn show_ossde(&mut self, seen: &mut Sink<'_>) {

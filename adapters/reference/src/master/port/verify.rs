@@ -51,7 +51,10 @@ pub fn verify(
     };
     let right = |right: bool, digit: u16| if right { Ok(()) } else { Err(code(digit)) };
     let (authenticity, protocol) = (&config.authenticity, &config.protocol);
-    let compared = protocol.tech_par_crc != 0 || edition == Edition::V1_1;
+    let compared = match protocol.tech_par_crc {
+        0 => edition == Edition::V1_1 || is(MasterMutant::ArmedNotCompared),
+        _ => !is(MasterMutant::ArmedNotCompared),
+    };
     let mask = if is(MasterMutant::Authenticity2NotCompared) { !0 << 32 } else { !0 };
     let own = u64::from(authenticity.authenticity_1) << 32 | u64::from(authenticity.authenticity_2);
     let agrees = |fscp: [u8; 8]| u64::from_be_bytes(fscp) & mask == own & mask;
