@@ -126,7 +126,7 @@ catalogue! {
             "In the CRC-32 mode only the low 16 bits of the signature are compared."
         LongestPdUnchecked "longest-pd-unchecked", "11.4.7":
             "The signature is not checked where the process data have their greatest length."
-        ReservedBitsUnsigned "reserved-bits-unsigned", "11.4.7":
+        ReservedBitsUnsigned "reserved-bits-unsigned", "11.4.3":
             "The signature of an answer is calculated over the Status&DCnt octet with its reserved bits 0."
         WatchdogEarly "watchdog-early", "11.5.5":
             "MTimer expires after three quarters of FSP_Watchdog."
