@@ -73,7 +73,7 @@ fn regular(variant: Variant, options: MasterOptions) -> Vec<(u64, Seen)> {
     tour.set(Service::PdoutM, &[1, 2, 3]);
     tour.lost(2 * WATCHDOG);
     tour.receive(&vec![0; variant.mode.spdu_octets(3)]);
-    for answer in [d(7).sd_set(), d(6).sd_set(), d(5).sd_set(), d(4), d(3).sd_set(), d(2)] {
+    for answer in [d(7).sd_set(), d(6).sd_set(), d(5).sd_set(), d(4), d(3).sd_set(), d(3), d(2)] {
         tour.answer(answer);
     }
     tour.receive(&vec![0; variant.mode.spdu_octets(3)]);
@@ -138,7 +138,7 @@ fn timeout_behind_1(variant: Variant, options: MasterOptions) -> Vec<(u64, Seen)
     tour.all
 }
 
-/// Signatures of 0 both ways, at the greatest length, and one whose upper half is wrong.
+/// Signatures of 0 both ways, at the greatest length, one whose upper half is wrong, and one with a reserved bit falsified.
 fn signatures(variant: Variant, options: MasterOptions) -> Vec<(u64, Seen)> {
     let mut tour = operate(variant, options);
     let status = Status { dcount_i: 3, ..Status::default() }.to_octet();
@@ -160,10 +160,14 @@ fn signatures(variant: Variant, options: MasterOptions) -> Vec<(u64, Seen)> {
         let emitted = wire.emit(mode, Reading::Preset);
         tour.receive(emitted.octets());
     }
-    let mut half = d(3).octets(variant).as_slice().to_vec();
-    let at = half.len() - mode.signature_octets();
-    half[at] ^= 0x80;
-    tour.receive(&half);
+    let falsified = |answer: Answer, back: usize, bit: u8| {
+        let mut octets = answer.octets(variant).as_slice().to_vec();
+        let at = octets.len() - mode.signature_octets() - back;
+        octets[at] ^= bit;
+        octets
+    };
+    tour.receive(&falsified(d(3), 0, 0x80));
+    tour.receive(&falsified(d(2), 1, 0x08));
     tour.answer(d(2).bad());
     tour.all
 }

@@ -42,12 +42,16 @@ catalogue! {
             "MCount is not incremented while the answers carry SDset."
         SdsetIsFault "sdset-is-fault", "11.5.2 Table 38 T4":
             "SDset alone counts as a fault of the FS-Device."
+        SdsetInOperationIsFault "sdset-in-operation-is-fault", "11.5.2 Table 38 T4":
+            "SDset is let pass at the start, and counts as a fault once process data have been passed on."
         MTimerStartedOnce "m-timer-started-once", "11.5.2 Table 38 T5":
             "A new regular SPDU does not restart an MTimer that runs already."
         AllZeroAnswerChecked "all-zero-answer-checked", "11.5.2 Table 38 T6":
             "An answer of all zeros is checked in state 5 instead of being ignored."
         OldCounterChecked "old-counter-checked", "11.5.2 Table 38 T6":
             "An answer with the previous counter is checked instead of being left alone."
+        RepeatedDataPassedOn "repeated-data-passed-on", "11.5.2 Table 38 T6":
+            "The process data of an answer that is left alone, for its counter is the previous one, reach PDin_M."
         ForeignCounterWaitedOut "foreign-counter-waited-out", "11.5.2 Table 38 T6":
             "In state 5 a counter that is neither old nor mirrored is ignored instead of being a fault."
         FaultKeepsMcount "fault-keeps-mcount", "11.5.2 Table 38 T7":
@@ -66,6 +70,8 @@ catalogue! {
             "PDin_M keeps its process data at a timeout."
         ExceptionalSpduWithData "exceptional-spdu-with-data", "11.5.2 Table 38 T9":
             "The exceptional SPDU repeats the process data of the SPDU before."
+        ExceptionalSpduCountsOn "exceptional-spdu-counts-on", "11.5.2 Table 38 T9":
+            "Each exchange without an answer sends the exceptional SPDU with the next MCount instead of the same one."
         MTimerStoppedAfterFault "m-timer-stopped-after-fault", "11.5.2 Table 38 T9":
             "An exceptional SPDU stops MTimer."
         OnlyNewCounterAfterFault "only-new-counter-after-fault", "11.5.2 Table 38 T10":
@@ -76,6 +82,8 @@ catalogue! {
             "ChFAck_C_e stays 1 after an acknowledgment."
         AskedAfterAcknowledgment "asked-after-acknowledgment", "11.5.2 Table 38 T11":
             "ChFAckReq stays 1 after an acknowledgment."
+        PressInOperationKept "press-in-operation-kept", "11.5.2 Table 38 T11":
+            "ChFAck_C at 1 in regular operation is kept, and acknowledges the next fault."
         ArmedAfterFault "armed-after-fault", "11.5.2 Table 38 T12":
             "ChFAck_C_e stays 1 at a fault in state 8."
         AskedAfterFault "asked-after-fault", "11.5.2 Table 38 T12":
@@ -122,6 +130,8 @@ catalogue! {
             "Of PDin_M only the first 16 octets are delivered, the others stay 0."
         PdinOfPdoutLength "pdin-of-pdout-length", "11.4.4":
             "PDin_M is delivered with as many octets as PDout_M has."
+        ReservedBitsUnsigned "reserved-bits-unsigned", "11.4.3":
+            "The signature of an answer is calculated over the Status&DCnt octet with its reserved bits 0."
         WatchdogEarly "watchdog-early", "11.5.5":
             "MTimer expires after three quarters of FSP_Watchdog."
         WatchdogLate "watchdog-late", "11.5.5":

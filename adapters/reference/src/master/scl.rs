@@ -89,6 +89,8 @@ pub struct Scl {
     /// DCount_i of the answer processed last.
     d_count_i: Option<u8>,
     m_timer: Option<u64>,
+    /// ChFAck_C was 1 in regular operation; kept by the fault `press-in-operation-kept` alone.
+    pressed_before: bool,
     spdu: Emitted,
     outputs: Outputs,
 }
@@ -108,6 +110,7 @@ impl Scl {
             ch_f_ack_c_e: false,
             d_count_i: None,
             m_timer: None,
+            pressed_before: false,
             spdu: emitted(&config, Pd::safe(config.pd_out.into()), Control { mcount, set_sd, ch_f_ack_req: false }),
             outputs: Outputs::initial(config.pd_in),
         };
@@ -160,6 +163,14 @@ impl Scl {
         }
     }
 
+    /// An exchange in which nothing came from the FS-Device: no transition, the SPDU stands.
+    pub fn missed(&mut self) {
+        if self.is(MasterMutant::ExceptionalSpduCountsOn) && self.state == State::WaitOnResponse7 {
+            self.next_m_count();
+            self.send(Pd::safe(self.config.pd_out.into()));
+        }
+    }
+
     /// The SPDU as the FS-Device has sent it.
     pub fn received(&mut self, now: u64, octets: &[u8], inputs: &Inputs) {
         let Ok(answer) = View::new(octets, self.config.mode, self.config.pd_in.into()) else { return };
@@ -179,6 +190,7 @@ impl Scl {
             State::WaitOnResponse2 => self.check_spdu_3(now, &answer, inputs),
             State::WaitOnResponse5 if self.taken_in_5(counter) => self.check_spdu_3(now, &answer, inputs),
             State::WaitOnResponse7 if self.taken_in_7(counter) => self.check_spdu_8(now, &answer, inputs),
+            State::WaitOnResponse5 if self.is(MasterMutant::RepeatedDataPassedOn) => self.outputs.pd_in = data(&answer),
             _ => {}
         }
     }
@@ -218,6 +230,7 @@ impl Scl {
             self.send_exceptional(now);
         } else {
             // T4
+            self.pressed_before |= inputs.ch_f_ack_c && self.is(MasterMutant::PressInOperationKept);
             if !(self.is(MasterMutant::McountStandsWhileSdset) && answer.status().sd_set) {
                 self.next_m_count();
             }
@@ -235,7 +248,7 @@ impl Scl {
             return self.send_exceptional(now);
         }
         let level = self.is(MasterMutant::AcknowledgmentAsLevel);
-        let unasked = self.is(MasterMutant::RestartWithoutAcknowledgment);
+        let unasked = std::mem::take(&mut self.pressed_before) || self.is(MasterMutant::RestartWithoutAcknowledgment);
         let pressed = inputs.ch_f_ack_c != self.is(MasterMutant::AcknowledgmentOnFallingEdge);
         if unasked || pressed && (self.ch_f_ack_c_e || level) {
             // T11
@@ -272,6 +285,9 @@ impl Scl {
             Some(MasterMutant::DTimeoutIgnored) => status.d_comm_err,
             Some(MasterMutant::DCommErrIgnored) => status.d_timeout,
             Some(MasterMutant::DCommErrNeedsSdset) => status.d_comm_err && status.sd_set || status.d_timeout,
+            Some(MasterMutant::SdsetInOperationIsFault) => {
+                status.d_comm_err || status.d_timeout || status.sd_set && !self.outputs.sd_set_s
+            }
             Some(MasterMutant::SdsetIsFault) => status.d_comm_err || status.d_timeout || status.sd_set,
             _ => status.d_comm_err || status.d_timeout,
         };
@@ -280,7 +296,7 @@ impl Scl {
 
     /// State 4, T5: process data or SD as the answer and setSD_C ask.
     fn send_regular(&mut self, now: u64, answer: &View<'_>, inputs: &Inputs) {
-        let pd_in = Pd::new(answer.pd()).unwrap_or(Pd::safe(answer.pd().len()));
+        let pd_in = data(answer);
         let sd_set = answer.status().sd_set && !self.is(MasterMutant::SdsetIgnored);
         if sd_set || inputs.set_sd_c {
             self.outputs.sd_set_s = inputs.set_sd_c || !self.is(MasterMutant::SdsetNotReported);
@@ -383,4 +399,9 @@ impl Scl {
     fn is(&self, mutant: MasterMutant) -> bool {
         self.config.mutant == Some(mutant)
     }
+}
+
+/// The process data of an answer.
+fn data(answer: &View<'_>) -> Pd {
+    Pd::new(answer.pd()).unwrap_or(Pd::safe(answer.pd().len()))
 }

@@ -96,6 +96,8 @@ impl PortUnit {
                 scl.received(now, safety, &self.inputs);
                 self.show_scl(seen);
             }
+        } else if let Some(scl) = &mut self.scl {
+            scl.missed();
         }
         let mut image = [self.fs_out(), self.nsr_out.clone()];
         if self.is(MasterMutant::NsrBeforeSpdu) {

@@ -37,7 +37,9 @@ pub(super) fn emitted(config: &Config, pd: Pd, control: Control) -> Emitted {
 
 /// Whether the signature of the answer is right.
 pub(super) fn signature_good(config: &Config, answer: &View<'_>) -> bool {
-    let right = signed(config, answer.pd(), [answer.port_num(), answer.octet()]);
+    let unsigned = config.mutant == Some(MasterMutant::ReservedBitsUnsigned);
+    let status = if unsigned { answer.status().to_octet() } else { answer.octet() };
+    let right = signed(config, answer.pd(), [answer.port_num(), status]);
     match config.mutant {
         Some(MasterMutant::LongestPdUnchecked) if answer.pd().len() == config.mode.max_pd() => true,
         Some(MasterMutant::SignatureLow16Bits) => right as u16 == answer.signature() as u16,
