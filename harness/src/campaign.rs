@@ -109,7 +109,8 @@ pub enum Judges {
     /// The oracle, at every exchange, and the expectations of the case.
     #[default]
     OracleAndCase,
-    /// The expectations of the case alone: to see what a case is worth by itself. Nothing is judged so for a user.
+    /// The expectations of the case alone: to see what a case is worth by itself. Nothing is judged so for a user. The oracle
+    /// only tells which other readings, let pass, still explain what was seen.
     CaseAlone,
 }
 

@@ -238,9 +238,11 @@ impl<'s, 'd> Engine<'s, 'd> {
     /// What an expectation that is not met comes to. On a bench whose timing slipped it is inconclusive at most.
     ///
     /// Expectations are written for the default readings. Once the DUT has made use of a tolerance the oracle, which
-    /// knows what else that allows, judges link and application alone: what a case expects there is a remark at most.
+    /// knows what else that allows, judges link and application alone: what a case expects there is a remark at most. Where
+    /// the case alone judges that holds as long as such a reading explains everything seen.
     fn weigh(&self, key: Key, verdict: Verdict) -> Option<Verdict> {
-        let used = self.session.link().oracle.used();
+        let link = self.session.link();
+        let used = if link.unexplained { Mask::NONE } else { link.oracle.used() };
         // The oracle judges by the DUT's own time stamps; a case counts on its own timing.
         let verdict = if self.session.slipped { verdict.min(Verdict::Inconclusive) } else { verdict };
         match key {

@@ -266,13 +266,20 @@ fn service(expectation: &Expectation, before: &Before, session: &Session<'_>, te
     if session.setup().pd_out == 0 {
         return None;
     }
+    let safe = hex(&vec![0; session.setup().pd_out]);
+    let observed = session.link().app.pdout_d.map(|octets| hex(octets.as_slice()));
     let expected = match &expectation.value {
         Expected::Live => hex(tester.pd.octets()),
         Expected::Unchanged => hex(before.pdout_d?.as_slice()),
         Expected::Octets(octets) => hex(octets),
-        _ => hex(&vec![0; session.setup().pd_out]),
+        Expected::Withheld => {
+            let stood = before.pdout_d.map_or(safe.clone(), |octets| hex(octets.as_slice()));
+            let met = observed.as_ref().is_some_and(|octets| *octets == safe || *octets == stood);
+            return Some((format!("{safe} or {stood}"), observed.unwrap_or_else(|| "not reported".to_owned()), met));
+        }
+        _ => safe,
     };
-    Some(compare(expected, session.link().app.pdout_d.map(|octets| hex(octets.as_slice()))))
+    Some(compare(expected, observed))
 }
 
 fn reply(expectation: &Expectation, session: &Session<'_>) -> Judged {

@@ -117,13 +117,14 @@ pub fn matrix(library: &Library, role: Role, done: &(dyn Fn() + Sync)) -> Result
     Ok(Matrix { role: role.to_string(), mutants, cases })
 }
 
-/// A case that failed kills when an expectation in one of its own steps did; where things start and whether they go on
-/// afterwards is no business of a single case.
+/// A case that failed kills when an expectation in one of its own steps did, which a partner that has to come to operation is
+/// one of; where things start and whether they go on afterwards is no business of a single case.
 fn kill(row: &mut Row, case: &CaseRecord) {
     // Step 0 is the start condition; the liveness check has a step of its own only where the case came that far.
     let own = |reason: &&Reason| {
         let step = case.steps.get(reason.step).filter(|step| !step.text.starts_with("liveness:"));
-        reason.verdict == Verdict::Fail && reason.kind.starts_with("expect/") && reason.step > 0 && step.is_some()
+        let expected = reason.kind.starts_with("expect/") || reason.kind == "liveness";
+        reason.verdict == Verdict::Fail && expected && reason.step > 0 && step.is_some()
     };
     let Some(reason) = case.reasons.iter().find(own) else { return };
     *row.killed_by.entry(case.id.clone()).or_default() += 1;

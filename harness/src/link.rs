@@ -74,6 +74,8 @@ pub struct Link {
     pub keeper: Option<Keeper>,
     /// The case alone judges: what the oracle cannot explain ends its part in the case and nothing else.
     pub case_alone: bool,
+    /// That has come about: no reading explains the DUT, so none excuses it from what a case expects.
+    pub unexplained: bool,
     /// The SCL is not judged: nobody can say whether it may start, or the oracle has no part in the case any more.
     unjudged: bool,
     /// OSSDe transitions of earlier configurations in the same case.
@@ -109,6 +111,7 @@ impl Link {
             ack: false,
             keeper: None,
             case_alone: false,
+            unexplained: false,
             unjudged: false,
             ossde_before: [0; 6],
         }
@@ -182,7 +185,7 @@ impl Link {
     /// What the oracle says, if it has a say.
     fn heed(&mut self, outcome: Result<(), Mismatch>) -> Result<(), Mismatch> {
         if outcome.is_err() && self.case_alone {
-            self.unjudged = true;
+            (self.unjudged, self.unexplained) = (true, true);
             self.leave_ossde();
             return Ok(());
         }

@@ -114,7 +114,13 @@ impl Tester {
                 return (echo, "the DUT's own answer".to_owned());
             }
             Image::Standard => {
-                let octets = self.pattern(self.length());
+                let mut octets = self.pattern(self.length());
+                // To an FS-Device the octet in the place of the counter reads as the one awaited: neither old nor a jump.
+                if self.setup.role == Role::Device
+                    && let Some(place) = octets.get_mut(self.setup.sent_pd() + 1)
+                {
+                    *place = count << 5 | *place & 0x1F;
+                }
                 return self.instead(Octets::new(&octets).unwrap_or_default(), "standard process data");
             }
             Image::Ago(count) => {
@@ -323,6 +329,14 @@ mod tests {
         assert_eq!(built("{image: 4 ago}"), None, "no such SPDU was sent");
         let next = built("{}").expect("an SPDU");
         assert_eq!(next.as_slice()[3] >> 5, 4);
+    }
+
+    #[test]
+    fn standard_process_data_read_as_the_awaited_counter() {
+        let (mut tester, _) = running();
+        let octets = tester.build(&exchange("{image: standard}"), None, None).0.expect("octets");
+        let view = fsct_protocol::spdu::View::new(octets.as_slice(), ProtMode::Crc16, 2).expect("its length is right");
+        assert_eq!((view.counter(), view.signature_matches(Reading::Preset)), (4, false));
     }
 
     #[rstest]

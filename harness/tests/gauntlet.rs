@@ -12,6 +12,13 @@ fn against(suites: &[&str]) -> Matrix {
     matrix(&library, Role::Device, &|| ()).unwrap_or_else(|problem| panic!("{}", problem.render(false)))
 }
 
+/// The mutants of the FS-Device against these cases.
+fn against_cases(ids: &[&str]) -> Matrix {
+    let mut library = Library::embedded().unwrap_or_else(|problems| panic!("{}", problems[0].render(false)));
+    library.suites.iter_mut().for_each(|suite| suite.cases.retain(|case| ids.contains(&case.id.as_str())));
+    matrix(&library, Role::Device, &|| ()).unwrap_or_else(|problem| panic!("{}", problem.render(false)))
+}
+
 fn mutant<'m>(matrix: &'m Matrix, name: &str) -> &'m Mutant {
     matrix.mutants.iter().find(|mutant| mutant.name == name).unwrap_or_else(|| panic!("there is no mutant {name}"))
 }
@@ -28,6 +35,28 @@ fn a_case_about_the_counter_kills_what_is_wrong_with_the_counter() {
     assert!(matrix.survivors().any(|other| other == survivor) && survivor.oracle == Some(true), "{survivor:?}");
     let case = matrix.cases.iter().find(|case| case.id == "FSD-0202").expect("it is in the suite");
     assert!(case.kills > 0 && matrix.idle().all(|idle| idle.id != case.id));
+}
+
+#[test]
+fn a_reading_that_is_let_pass_excuses_a_mutant_only_as_long_as_it_explains_everything() {
+    let matrix = against_cases(&["FSD-0016", "FSD-0125", "FSD-0132"]);
+    assert_eq!(mutant(&matrix, "all-zero-first").named_by, ["FSD-0016"]);
+    // One answer to an error may be that of A08 with A16; the one after regular operation cannot.
+    assert_eq!(mutant(&matrix, "t25-keeps-d-count").named_by, ["FSD-0132"]);
+}
+
+#[test]
+fn a_partner_that_finds_no_operation_is_an_expectation_of_the_case() {
+    let matrix = against_cases(&["FSD-0802"]);
+    assert_eq!(mutant(&matrix, "zero-old-after-timeout").named_by, ["FSD-0802"]);
+    // Whether the DUT goes on after the last step is no business of a case.
+    assert!(mutant(&against_cases(&["FSD-0130"]), "t28-returns-to-26").killed_by.is_empty());
+}
+
+#[test]
+fn what_is_withheld_is_safe_or_what_stood() {
+    let matrix = against_cases(&["FSD-1554"]);
+    assert_eq!(mutant(&matrix, "port-inverted-taken").named_by, ["FSD-1554"]);
 }
 
 #[test]

@@ -48,8 +48,12 @@ catalogue! {
             "PDout_D is handed over last octet first."
         PdinReversed "pdin-reversed", "11.4.3":
             "FS-PDin is sent last octet first."
+        PdinTailLost "pdin-tail-lost", "11.4.4":
+            "The last octet of PDin_D is sent as 0 when FS-PDin has the greatest length of its mode."
         PdinLate "pdin-late", "11.5.3 Table 40 T22":
             "An answer carries the PDin_D that stood when the answer before it was made."
+        CounterAloneChecked "counter-alone-checked", "11.5.6.8":
+            "In regular operation the counter of an SPDU is checked, its signature and PortNum are not."
         PortUnchecked "port-unchecked", "11.5.3 Table 40 T25, 11.4.5":
             "PortNum of a received SPDU is not compared."
         PortInvertedTaken "port-inverted-taken", "11.5.6.10":
@@ -112,6 +116,10 @@ catalogue! {
             "An SPDU with the previous counter is checked instead of ignored."
         OldTakenAfterFault "old-taken-after-fault", "11.5.3 Table 40 T27":
             "After a fault an SPDU with the previous counter is checked instead of ignored."
+        ZeroOldAfterTimeout "zero-old-after-timeout", "11.5.3 Table 40 T27":
+            "While DTimeout is reported MCount 0 is left alone, and an FS-Master that starts anew is never answered."
+        OldCountsSdCycle "old-counts-sd-cycle", "11.5.3 Table 40 T27":
+            "Repetitions of an SPDU after a fault run SDcycles down."
         OldChangesPdout "old-changes-pdout", "11.5.3 Table 40 T24":
             "An SPDU with the previous counter hands its process data over."
         OldChangesPdin "old-changes-pdin", "11.5.3 Table 40 T24":

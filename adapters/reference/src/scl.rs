@@ -177,7 +177,8 @@ impl Scl {
         if spdu.is_all_zero() && !self.checks_all_zero(now) {
             return;
         }
-        let not_old = self.m_count != Some(spdu.counter());
+        let zero_old = self.is(Mutant::ZeroOldAfterTimeout) && self.status.d_timeout && spdu.counter() == 0;
+        let not_old = self.m_count != Some(spdu.counter()) && !zero_old;
         match self.state {
             State::WaitOnSpdu21 => self.check_spdu_22(now, octets, &spdu, inputs),
             State::WaitOnSpdu24 if not_old => self.check_spdu_22(now, octets, &spdu, inputs),
@@ -207,6 +208,7 @@ impl Scl {
             (Some(Mutant::OldChangesPdout), State::WaitOnSpdu24) => self.outputs.pd_out = self.received_pd(spdu),
             (Some(Mutant::OldChangesPdin), State::WaitOnSpdu24) => self.prepare_response_23(inputs),
             (Some(Mutant::OldRestartsDTimer), _) => self.start_d_timer(now),
+            (Some(Mutant::OldCountsSdCycle), State::WaitOnSpdu26) => self.sd_cycles = self.sd_cycles.saturating_sub(1),
             _ => {}
         }
     }

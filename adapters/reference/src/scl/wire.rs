@@ -41,6 +41,7 @@ impl Scl {
         let (own, received) = (self.config.port, spdu.port_num());
         match self.config.mutant {
             Some(Mutant::PortUnchecked) => true,
+            Some(Mutant::CounterAloneChecked) if self.state == State::WaitOnSpdu24 => true,
             Some(Mutant::PortUncheckedAfterFault) if self.state == State::WaitOnSpdu26 => true,
             Some(Mutant::PortInvertedTaken) if received == own.inverted() => true,
             _ => received == own.number(),
@@ -51,6 +52,7 @@ impl Scl {
         let secured = octets.get(..spdu.pd().len() + 2).unwrap_or_default();
         let (right, received) = (self.signature(secured), spdu.signature());
         match self.config.mutant {
+            Some(Mutant::CounterAloneChecked) if self.state == State::WaitOnSpdu24 => true,
             Some(Mutant::SignatureUncheckedAfterFault) if self.state == State::WaitOnSpdu26 => true,
             Some(Mutant::SignatureUncheckedWithoutData) if spdu.pd().is_empty() => true,
             Some(Mutant::Crc32HalfCompared) => right & 0xFFFF == received & 0xFFFF,
@@ -64,10 +66,17 @@ impl Scl {
         let mut octets = spdu.pd().to_vec();
         match self.config.mutant {
             Some(Mutant::PdoutReversed) => octets.reverse(),
-            Some(Mutant::PdoutTailLost) if octets.len() == self.config.mode.max_pd() => {
-                octets.last_mut().into_iter().for_each(|octet| *octet = 0);
-            }
+            Some(Mutant::PdoutTailLost) => return self.without_tail(&octets),
             _ => {}
+        }
+        Pd::new(&octets).unwrap_or(Pd::safe(octets.len()))
+    }
+
+    /// Process data whose last octet is 0 if they are as long as the mode allows.
+    fn without_tail(&self, octets: &[u8]) -> Pd {
+        let mut octets = octets.to_vec();
+        if octets.len() == self.config.mode.max_pd() {
+            octets.last_mut().into_iter().for_each(|octet| *octet = 0);
         }
         Pd::new(&octets).unwrap_or(Pd::safe(octets.len()))
     }
@@ -80,6 +89,7 @@ impl Scl {
                 let octets: Vec<u8> = inputs.pd_in.octets().iter().rev().copied().collect();
                 Pd::new(&octets).unwrap_or(inputs.pd_in)
             }
+            Some(Mutant::PdinTailLost) => self.without_tail(inputs.pd_in.octets()),
             _ => inputs.pd_in,
         }
     }

@@ -119,9 +119,19 @@ fn values(key: Key) -> (Words, Option<u32>, bool) {
         Key::Image => {
             (&[(Expected::Safe, "zero"), (Expected::Unchanged, "unchanged"), (Expected::Answer, "answer")], None, false)
         }
-        Key::PdoutD | Key::PdinM => {
+        Key::PdinM => {
             (&[(Expected::Live, "live"), (Expected::Safe, "safe"), (Expected::Unchanged, "unchanged")], None, true)
         }
+        Key::PdoutD => (
+            &[
+                (Expected::Live, "live"),
+                (Expected::Safe, "safe"),
+                (Expected::Unchanged, "unchanged"),
+                (Expected::Withheld, "withheld"),
+            ],
+            None,
+            true,
+        ),
         Key::Mode => (
             &[
                 (Expected::Mode(Mode::Inactive), "INACTIVE"),

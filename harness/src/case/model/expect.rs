@@ -198,6 +198,8 @@ pub enum Expected {
     Live,
     /// All octets 0.
     Safe,
+    /// All octets 0 or as before the step: nothing of what came is used.
+    Withheld,
     /// An SPDU with right signature.
     Answer,
     /// A write carried out.
