@@ -6,6 +6,7 @@ mod common;
 use cli::{Folder, fsct};
 use common::{library, run_with};
 use fsct_adapters::{Dut, Role};
+use fsct_harness::conditions::Sides;
 use fsct_harness::library::Library;
 use fsct_harness::plan::Selection;
 use fsct_harness::tours::{emit, feasible_for};
@@ -21,7 +22,7 @@ const MASTER: &str = "master";
 /// What cases took of the goals, and what they did not.
 fn not_taken(library: &Library, role: &str, cases: &[CaseRecord]) -> Vec<String> {
     let coverage = &library.coverage[role];
-    let goals = coverage.names(coverage.feasible);
+    let goals = coverage.names(coverage.feasible, Sides::NONE);
     let taken: BTreeSet<&String> =
         cases.iter().flat_map(|case| case.walked.triples.iter().chain(&case.walked.step_pairs)).collect();
     goals.triples.iter().chain(&goals.step_pairs).filter(|goal| !taken.contains(goal)).cloned().collect()
@@ -44,8 +45,8 @@ fn cases(library: &Library, role: &str) -> Vec<CaseRecord> {
 fn what_the_search_finds_feasible_is_what_the_goals_call_feasible(#[case] role: Role) {
     let library = library();
     let coverage = &library.coverage[&role.to_string()];
-    let found = coverage.names(feasible_for(role));
-    assert_eq!(found, coverage.names(coverage.feasible));
+    let found = coverage.names(feasible_for(role), Sides::NONE);
+    assert_eq!(found, coverage.names(coverage.feasible, Sides::NONE));
     let all = Graph::role(role).step_pairs.len();
     assert_eq!(found.step_pairs.len() + coverage.infeasible.len(), all, "every other pair of steps has its reason");
     assert_eq!((found.step_pairs.len(), all), (30, 35));
