@@ -19,6 +19,16 @@ use std::collections::BTreeSet;
 const DEVICE: &str = "device";
 const MASTER: &str = "master";
 
+/// What cases were seen to decide of what is asked, and what they were not.
+fn not_decided(library: &Library, role: &str, cases: &[CaseRecord]) -> Vec<String> {
+    let asked = &library.coverage[role].asked;
+    let seen: BTreeSet<&String> =
+        cases.iter().flat_map(|case| case.walked.guards.iter().chain(&case.walked.timers)).collect();
+    let never = asked.guards.infeasible.iter().chain(&asked.timers.infeasible);
+    assert_eq!(never.filter(|(side, _)| seen.contains(side)).collect::<Vec<_>>(), [], "it cannot be, and was");
+    asked.guards.feasible.iter().chain(&asked.timers.feasible).filter(|side| !seen.contains(side)).cloned().collect()
+}
+
 /// What cases took of the goals, and what they did not.
 fn not_taken(library: &Library, role: &str, cases: &[CaseRecord]) -> Vec<String> {
     let coverage = &library.coverage[role];
@@ -76,6 +86,18 @@ fn without_a_tour_its_goal_is_named(#[case] role: &str, #[case] id: &str, #[case
     assert_eq!(not_taken(&library, role, &cases(&library, role)), missing);
 }
 
+#[rstest]
+#[case(DEVICE, &["FSD-0631", "FSD-0632"], &["D27-PORTNUM false", "D27-MCOUNT-0 false", "D27-MCOUNT-NEXT false"])]
+#[case(MASTER, &["FSM-0731"], &["M7-NOT-ZERO false"])]
+fn without_its_case_a_condition_goes_one_way_only(#[case] role: &str, #[case] ids: &[&str], #[case] missing: &[&str]) {
+    let mut library = library();
+    assert_eq!(not_decided(&library, role, &cases(&library, role)), [""; 0], "the whole suite decides everything");
+    for suite in &mut library.suites {
+        suite.cases.retain(|case| !ids.contains(&case.id.as_str()));
+    }
+    assert_eq!(not_decided(&library, role, &cases(&library, role)), missing);
+}
+
 #[test]
 fn a_run_says_how_much_was_taken_and_names_the_rest() {
     let out = Folder::new("tours");
@@ -83,7 +105,12 @@ fn a_run_says_how_much_was_taken_and_names_the_rest() {
     assert_eq!(outcome.code, 4, "two filters exclude each other: {outcome:?}");
     let outcome = fsct(&["run", "device-tours", "--out", &out.out()]);
     assert_eq!(outcome.code, 0, "{outcome:?}");
-    assert!(outcome.out.contains(" · device: 26 of 26 triples, 30 of 30 step pairs · seed"), "{}", outcome.out);
+    assert!(outcome.out.contains(" · device: 26 of 26 triples, 30 of 30 step pairs, guards "), "{}", outcome.out);
+    assert!(
+        outcome.out.contains("\nnot seen of the device: D20-PRECONDITIONS false; nearest is FSD-1"),
+        "{}",
+        outcome.out
+    );
     assert!(!outcome.out.contains("CONTRADICTION") && !outcome.out.contains("not taken by"), "{}", outcome.out);
     let outcome = fsct(&[
         "run",

@@ -265,6 +265,11 @@ impl DeviceOracle {
         let incoming = match incoming {
             None => return out.push(config),
             Some(Incoming::Zero) => {
+                let Phase::Ready { since } = self.phase else { return };
+                if config.machine.state() == State(20) && at >= since + self.setup.scl_start_ns {
+                    // By now it waits in state 21.
+                    config.sides.set(OfDevice::NotZero21, false);
+                }
                 config.sides = config.sides.union(conditions::left_alone_by_device(&config.machine, None));
                 return out.push(config);
             }
