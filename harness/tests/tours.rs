@@ -107,7 +107,7 @@ fn a_run_says_how_much_was_taken_and_names_the_rest() {
     assert_eq!(outcome.code, 0, "{outcome:?}");
     assert!(outcome.out.contains(" · device: 26 of 26 triples, 30 of 30 step pairs, guards "), "{}", outcome.out);
     assert!(
-        outcome.out.contains("\nnot seen of the device: D20-PRECONDITIONS false; nearest is FSD-1"),
+        outcome.out.contains("\nnot seen of the device: DTIMER-24 restarted; nearest is FSD-16"),
         "{}",
         outcome.out
     );
