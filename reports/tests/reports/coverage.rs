@@ -78,7 +78,7 @@ fn a_condition_that_went_one_way_only_is_named_with_the_nearest_case() {
     let html = page("asked", &run);
     let at = html.find("<details open><summary>Guards and timers").expect("the table stands open");
     let table = &html[at..at + html[at..].find("</details>").expect("it ends")];
-    insta::assert_snapshot!("asked", table.replace("<tr>", "\n<tr>"));
+    assert!(table.contains("never") && table.contains("nearest is") && table.contains("cannot be: it does not run"));
     assert!(html.contains("✗ Seen although it cannot be: </span><code>DTIMER-21 expired</code>"));
 }
 
