@@ -291,7 +291,7 @@ impl Run<'_> {
         record.tolerances = tolerances;
         record.transitions = taken;
         if let Some(coverage) = self.library.coverage.get(&planned.case.role.to_string()) {
-            record.walked = coverage.names(session.walked());
+            record.walked = coverage.names(session.walked(), session.sides());
         }
         record.steps = outcome.steps;
         record.measurements = outcome.measurements;

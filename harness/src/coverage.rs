@@ -1,9 +1,13 @@
 //! What a DUT can be led through beyond single transitions, and what it cannot: `testcases/coverage/*.yaml`.
 
+mod asked;
+
+use crate::conditions::{Sides, is_timer};
 use crate::problem::{Problem, Source};
 use crate::tree::{self, Fields, Placed};
 use crate::walk::{Graph, Step, Walked, places};
 use crate::yaml;
+use asked::Asked;
 use fsct_adapters::Role;
 use fsct_protocol::scl::T;
 use fsct_reports::record::{self, Goal, MachineInfo};
@@ -23,6 +27,8 @@ pub struct Coverage {
     pub feasible: Walked,
     /// Pairs of steps that cannot, by their names, with the reason.
     pub infeasible: Vec<(String, String)>,
+    /// The conditions of guards and the timers.
+    pub asked: Asked,
 }
 
 impl Coverage {
@@ -37,8 +43,10 @@ impl Coverage {
         let role = fields.word("machine", &[(Role::Device, "device"), (Role::Master, "master")]);
         let nodes = ["transitions", "steps", "infeasible"].map(|key| fields.get(key));
         let lists = ["pairs", "triples", "step_pairs"].map(|key| fields.texts(key));
+        let conditions = ["guards", "timers"].map(|key| fields.get(key));
         fields.finish(&mut problems);
         let Some(role) = role else { return Err(problems) };
+        let asked = Asked::parse(source, role, conditions, &mut problems);
         let graph = Graph::role(role);
         let [transitions, steps, infeasible] = nodes;
         let mut items = |node: Option<&yaml::Node>, what: &'static str, keys: [&'static str; 3]| {
@@ -105,15 +113,18 @@ impl Coverage {
             problem(0..0, format!("`{}` is called feasible and infeasible", known.step_pairs[place]));
         }
         let feasible = Walked { pairs, triples, step_pairs };
-        let coverage = Coverage { role, requirements, steps: names, feasible, infeasible: reasons };
+        let coverage = Coverage { role, requirements, steps: names, feasible, infeasible: reasons, asked };
         if problems.is_empty() { Ok(coverage) } else { Err(problems) }
     }
 
-    /// The names of what has been walked, for the record.
-    pub fn names(&self, walked: Walked) -> record::Walked {
+    /// The names of what has been walked and of what has decided on the way, for the record.
+    pub fn names(&self, walked: Walked, sides: Sides) -> record::Walked {
         let known = Names::of(Graph::role(self.role), &self.steps);
         let pick = |bits, names: &[String]| places(bits).filter_map(|place| names.get(place).cloned()).collect();
+        let (timers, guards) = sides.names(self.role).partition(|side| is_timer(side));
         record::Walked {
+            guards,
+            timers,
             pairs: pick(walked.pairs, &known.pairs),
             triples: pick(walked.triples, &known.triples),
             step_pairs: pick(walked.step_pairs, &known.step_pairs),
@@ -122,7 +133,7 @@ impl Coverage {
 
     /// The goals, for the header of a record.
     pub fn info(&self) -> MachineInfo {
-        let goals = self.names(self.feasible);
+        let goals = self.names(self.feasible, Sides::NONE);
         let steps = self.steps.iter().zip(&Graph::role(self.role).steps);
         let goal = |feasible, infeasible| Goal { feasible, infeasible };
         MachineInfo {
@@ -131,6 +142,9 @@ impl Coverage {
             pairs: goal(goals.pairs, Vec::new()),
             triples: goal(goals.triples, Vec::new()),
             step_pairs: goal(goals.step_pairs, self.infeasible.clone()),
+            conditions: self.asked.conditions.clone(),
+            guards: self.asked.guards.clone(),
+            timers: self.asked.timers.clone(),
         }
     }
 }

@@ -6,6 +6,7 @@ pub mod campaign;
 pub mod case;
 pub mod channel;
 pub mod cli;
+pub mod conditions;
 pub mod coverage;
 pub mod engine;
 pub mod expect;

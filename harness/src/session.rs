@@ -4,6 +4,7 @@ mod batch;
 
 pub use batch::Item;
 
+use crate::conditions::Sides;
 use crate::link::Link;
 use crate::oracle::{Mask, Mismatch, Setup};
 use crate::profile::Profile;
@@ -511,6 +512,11 @@ impl<'d> Session<'d> {
     /// What followed what on any port.
     pub fn walked(&self) -> Walked {
         self.links.iter().fold(Walked::default(), |walked, link| walked.union(link.oracle.walked()))
+    }
+
+    /// Which way conditions decided on any port.
+    pub fn sides(&self) -> Sides {
+        self.links.iter().fold(Sides::NONE, |sides, link| sides.union(link.oracle.sides()))
     }
 
     /// Tolerances the DUT made use of on any port.

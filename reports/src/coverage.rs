@@ -1,5 +1,6 @@
 //! How far the machines of the DUTs have been led beyond single transitions, against what can be walked.
 
+use crate::asked::Asked;
 use crate::record::{CaseRecord, Goal, Header, MachineInfo};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -15,6 +16,9 @@ pub struct Coverage {
     pub triples: Reached,
     /// Pairs of steps, a step being everything between two waiting states.
     pub step_pairs: Reached,
+    /// Conditions and timers; `None` for a record that has no goals for them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub asked: Option<Asked>,
 }
 
 /// What was taken of what is feasible, of one kind.
@@ -41,6 +45,7 @@ impl Coverage {
             pairs: Reached::begin(&machine.pairs),
             triples: Reached::begin(&machine.triples),
             step_pairs: Reached::begin(&machine.step_pairs),
+            asked: Asked::begin(machine),
         };
         header.machines.iter().map(begin).collect()
     }
@@ -50,6 +55,9 @@ impl Coverage {
         self.pairs.add(&case.walked.pairs);
         self.triples.add(&case.walked.triples);
         self.step_pairs.add(&case.walked.step_pairs);
+        if let Some(asked) = &mut self.asked {
+            asked.add(case);
+        }
     }
 
     /// All cases are in.
@@ -58,6 +66,9 @@ impl Coverage {
             self.pairs.end(&machine.pairs);
             self.triples.end(&machine.triples);
             self.step_pairs.end(&machine.step_pairs);
+            if let Some(asked) = &mut self.asked {
+                asked.end(machine);
+            }
         }
     }
 
@@ -68,7 +79,7 @@ impl Coverage {
 }
 
 impl Reached {
-    fn begin(goal: &Goal) -> Reached {
+    pub(crate) fn begin(goal: &Goal) -> Reached {
         Reached {
             feasible: goal.feasible.len(),
             taken: 0,
@@ -78,7 +89,7 @@ impl Reached {
         }
     }
 
-    fn add(&mut self, names: &[String]) {
+    pub(crate) fn add(&mut self, names: &[String]) {
         for name in names {
             match self.cases.get_mut(name) {
                 Some(count) => *count += 1,
@@ -87,7 +98,7 @@ impl Reached {
         }
     }
 
-    fn end(&mut self, goal: &Goal) {
+    pub(crate) fn end(&mut self, goal: &Goal) {
         let taken = |name: &&String| self.cases.get(*name).is_some_and(|count| *count > 0);
         self.taken = goal.feasible.iter().filter(taken).count();
         self.missing = goal.feasible.iter().filter(|name| !taken(name)).cloned().collect();

@@ -1,5 +1,6 @@
 //! How far a machine was led, for `report.html`: its state diagram with counts, and what was never taken in a row.
 
+use crate::asked_html;
 use crate::coverage::{Coverage, Reached};
 use crate::machine::Machine;
 use crate::record::Header;
@@ -166,7 +167,8 @@ fn whole(value: f64) -> i32 {
 
 /// What was taken in a row, of what can be.
 pub fn in_a_row(coverage: &Coverage, header: &Header) -> Markup {
-    let steps = header.machines.iter().find(|machine| machine.role == coverage.role).map(|machine| &machine.steps);
+    let machine = header.machines.iter().find(|machine| machine.role == coverage.role);
+    let steps = machine.map(|machine| &machine.steps);
     html! {
         ul {
             @for (kind, reached) in coverage.kinds() {
@@ -178,6 +180,7 @@ pub fn in_a_row(coverage: &Coverage, header: &Header) -> Markup {
                 p.fail { span.word { "✗ Taken although it cannot be: " } code { (short(name, NAME)) } " of the " (kind) ", " (short(said, 2 * NAME)) ". Either the goals or what was observed is wrong." }
             }
         }
+        @if let (Some(asked), Some(machine)) = (&coverage.asked, machine) { (asked_html::table(asked, machine)) }
         details {
             summary { "Pairs of steps, with the number of cases that took them" }
             @if let Some(steps) = steps {

@@ -1,5 +1,7 @@
 //! The run record and everything rendered from it: a report is a function of a record on disk.
 
+mod asked;
+mod asked_html;
 mod case_html;
 mod chart;
 mod compare;
@@ -18,6 +20,7 @@ mod story;
 mod summary;
 mod text;
 
+pub use asked::Asked;
 pub use compare::Differing;
 pub use coverage::{Coverage, Reached};
 pub use journal::{FILE, Journal, ReadError, Reader, Run, read};

@@ -62,6 +62,30 @@ pub struct MachineInfo {
     pub triples: Goal,
     /// Pairs of steps.
     pub step_pairs: Goal,
+    /// What is asked in its states.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub conditions: Vec<ConditionInfo>,
+    /// Both sides of every guard condition: `D22-SIGNATURE false`.
+    #[serde(default, skip_serializing_if = "Goal::is_empty")]
+    pub guards: Goal,
+    /// Both sides of its timer in every waiting state: `DTIMER-24 expired`, `DTIMER-24 restarted`.
+    #[serde(default, skip_serializing_if = "Goal::is_empty")]
+    pub timers: Goal,
+}
+
+/// A condition of a machine: of a guard, of an action, or its timer.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ConditionInfo {
+    /// Its id.
+    pub id: String,
+    /// The state it is asked in.
+    pub state: String,
+    /// The transitions it decides.
+    pub rows: String,
+    /// What is asked.
+    pub asks: String,
+    /// Where the standard asks it.
+    pub clause: String,
 }
 
 /// What can be walked of one kind, and what cannot.
@@ -72,6 +96,12 @@ pub struct Goal {
     /// What the rows of the machine would allow but its guards rule out, with the reason.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub infeasible: Vec<(String, String)>,
+}
+
+impl Goal {
+    fn is_empty(&self) -> bool {
+        self.feasible.is_empty() && self.infeasible.is_empty()
+    }
 }
 
 /// The error matrix for one role: which cases show what.
@@ -267,11 +297,17 @@ pub struct Walked {
     /// Pairs of steps.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub step_pairs: Vec<String>,
+    /// Sides of guard conditions that decided.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub guards: Vec<String>,
+    /// Sides of timers that were seen.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub timers: Vec<String>,
 }
 
 impl Walked {
     fn is_empty(&self) -> bool {
-        self.pairs.is_empty() && self.triples.is_empty() && self.step_pairs.is_empty()
+        [&self.pairs, &self.triples, &self.step_pairs, &self.guards, &self.timers].into_iter().all(Vec::is_empty)
     }
 }
 

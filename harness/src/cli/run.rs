@@ -13,7 +13,7 @@ use crate::yaml;
 use fsct_adapters::{Address, Description, DutError, Role};
 use fsct_protocol::Edition;
 use fsct_reports::record::{CaseRecord, DutInfo, Execution, Footer, Header, MatrixInfo, SCHEMA, Verdict};
-use fsct_reports::{Journal, Summary, visible};
+use fsct_reports::{Asked, Journal, Summary, visible};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::collections::BTreeMap;
 use std::io::IsTerminal;
@@ -404,7 +404,8 @@ fn walked(summary: &Summary) -> String {
     let said: Vec<String> = told
         .map(|one| {
             let (triples, steps) = (one.triples.said(), one.step_pairs.said());
-            format!(" · {}: {triples} triples, {steps} step pairs", one.role)
+            let asked = one.asked.as_ref().map_or_else(String::new, |asked| format!(", {}", asked.said()));
+            format!(" · {}: {triples} triples, {steps} step pairs{asked}", one.role)
         })
         .collect();
     said.concat()
@@ -421,6 +422,27 @@ fn in_a_row(summary: &Summary) {
                 let name = visible(name);
                 print(format!("CONTRADICTION: the {} took `{name}` of the {kind}, {}", one.role, visible(said)));
             }
+        }
+        if let Some(asked) = &one.asked {
+            self::asked(&one.role, asked);
+        }
+    }
+}
+
+/// The sides of conditions and timers that were not seen, as long as that is a short list; and those that cannot be and were.
+fn asked(role: &str, asked: &Asked) {
+    for (kind, reached) in asked.kinds() {
+        if reached.missing.len() > TOLD {
+            print(format!("{} sides of {kind} not seen of the {role}: the report names them", reached.missing.len()));
+        } else {
+            for side in &reached.missing {
+                let near = asked.nearest.get(side);
+                let near = near.map_or_else(String::new, |key| format!("; nearest is {}", visible(key)));
+                print(format!("not seen of the {role}: {}{near}", visible(side)));
+            }
+        }
+        for (side, said) in &reached.contradicting {
+            print(format!("CONTRADICTION: the {role} had `{}` of the {kind}, {}", visible(side), visible(said)));
         }
     }
 }

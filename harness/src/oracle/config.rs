@@ -1,6 +1,7 @@
 //! One configuration a DUT may be in: its machine, its timer, and the SPDUs it has made but may not show yet.
 
 use super::Mask;
+use crate::conditions::{Sides, timer};
 use crate::walk::{Graph, Trail};
 use fsct_adapters::Role;
 use fsct_protocol::scl::{Path, State, T};
@@ -79,6 +80,10 @@ pub struct Config<M, S> {
     pub via: [Path; 2],
     /// What followed what since the SCL began.
     pub trail: Trail,
+    /// Which way conditions have decided since the SCL began.
+    pub sides: Sides,
+    /// A timer that was restarted, and until when it would have expired otherwise.
+    restarted: Option<(u8, u64)>,
 }
 
 impl<M: Machine, S: Snapshot> Config<M, S> {
@@ -97,6 +102,8 @@ impl<M: Machine, S: Snapshot> Config<M, S> {
             taken: [0; TRANSITIONS],
             via: [Path::default(); 2],
             trail: Trail::default(),
+            sides: Sides::NONE,
+            restarted: None,
         }
     }
 
@@ -149,6 +156,30 @@ impl<M: Machine, S: Snapshot> Config<M, S> {
             {
                 *slot += 1;
             }
+        }
+    }
+
+    /// An SPDU was taken in this state, and the timer runs anew.
+    pub fn restart(&mut self, state: State, window: Option<Window>) {
+        self.restarted = self.timer.and_then(|window| Some((timer(M::ROLE, state)?, window.latest)));
+        self.timer = window;
+    }
+
+    /// The timer has expired in this state, and runs anew.
+    pub fn expired(&mut self, state: State, window: Window) {
+        if let Some(timer) = timer(M::ROLE, state) {
+            self.sides.set(timer, true);
+        }
+        self.restarted = None;
+        self.timer = Some(window);
+    }
+
+    /// This late, a timer that was restarted once would have expired, and has not.
+    pub fn not_expired(&mut self, at: u64) {
+        let early = self.timer.is_some_and(|window| at < window.earliest);
+        if let Some((timer, _)) = self.restarted.filter(|(_, latest)| early && at > *latest) {
+            self.sides.set(timer, false);
+            self.restarted = None;
         }
     }
 

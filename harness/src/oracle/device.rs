@@ -5,6 +5,7 @@ use super::explain::{self, Mismatch, Words, hex};
 use super::set::{self, Set};
 use super::setup::{App, Setup};
 use super::{Mask, explain_device};
+use crate::conditions::{self, OfDevice, Parts, Sides, Technology};
 use fsct_adapters::{Octets, Role, Service};
 use fsct_protocol::Edition;
 use fsct_protocol::scl::device::{Readings, Received};
@@ -97,10 +98,18 @@ enum Phase {
     Ready { since: u64 },
 }
 
+/// What the DUT received, when it is no repetition of nothing.
+#[derive(Copy, Clone)]
+enum Incoming {
+    Zero,
+    Spdu(Arrived),
+}
+
 /// A received SPDU that is not all zero.
 #[derive(Copy, Clone)]
-struct Incoming {
+struct Arrived {
     received: Received,
+    parts: Parts,
     pd: Pd,
 }
 
@@ -187,7 +196,15 @@ impl DeviceOracle {
         let image = image.filter(|octets| octets.iter().any(|octet| *octet != 0));
         match self.phase {
             Phase::Off => return Ok(()),
-            Phase::Idle => return self.idle(image, app),
+            Phase::Idle => {
+                let verdict = self.idle(image, app);
+                if verdict.is_ok() && matches!(received.and_then(|octets| self.read(octets)), Some(Incoming::Spdu(_))) {
+                    let mut sides = Sides::NONE;
+                    sides.set(OfDevice::Started, false);
+                    self.set.idle(sides);
+                }
+                return verdict;
+            }
             Phase::Ready { .. } => {}
         }
         let incoming = received.and_then(|octets| self.read(octets));
@@ -196,7 +213,7 @@ impl DeviceOracle {
             let expire = |config: &mut DeviceConfig, window| self.expire(config, at, window);
             set::timed(config, at, expire, |config| self.receive(config, at, incoming, &mut stepped));
         }
-        if incoming.is_some() && stepped.iter().any(|config| !config.via[0].is_empty()) {
+        if matches!(incoming, Some(Incoming::Spdu(_))) && stepped.iter().any(|config| !config.via[0].is_empty()) {
             self.sdset_ds_changed = false;
         }
         self.set.last_at = at;
@@ -221,16 +238,21 @@ impl DeviceOracle {
     fn read(&self, octets: &[u8]) -> Option<Incoming> {
         let view = View::new(octets, self.setup.mode, self.setup.pd_out).ok()?;
         if view.is_all_zero() {
-            return None;
+            return Some(Incoming::Zero);
         }
-        let intact = view.signature_matches(self.setup.reading) && view.port_num() == self.setup.port.number();
-        Some(Incoming { received: Received { control: view.control(), intact }, pd: Pd::new(view.pd())? })
+        let parts = Parts {
+            signature: view.signature_matches(self.setup.reading),
+            port_num: view.port_num() == self.setup.port.number(),
+        };
+        let received = Received { control: view.control(), intact: parts.signature && parts.port_num };
+        Some(Incoming::Spdu(Arrived { received, parts, pd: Pd::new(view.pd())? }))
     }
 
     fn expire(&self, config: &mut DeviceConfig, at: u64, window: Window) {
         let had_comm_err = config.machine.get(Var::DcommErr) == 1;
+        let state = config.machine.state();
         let path = config.machine.expire();
-        config.timer = Some(self.setup.watchdog_again(window, self.set.last_at, at));
+        config.expired(state, self.setup.watchdog_again(window, self.set.last_at, at));
         let mut free = Free::default();
         if had_comm_err && path.iter().any(|t| t == T(30)) {
             free.d_comm_err = 33;
@@ -240,7 +262,19 @@ impl DeviceOracle {
     }
 
     fn receive(&self, mut config: DeviceConfig, at: u64, incoming: Option<Incoming>, out: &mut Vec<DeviceConfig>) {
-        let Some(incoming) = incoming else { return out.push(config) };
+        let incoming = match incoming {
+            None => return out.push(config),
+            Some(Incoming::Zero) => {
+                let Phase::Ready { since } = self.phase else { return };
+                if config.machine.state() == State(20) && at >= since + self.setup.scl_start_ns {
+                    // By now it waits in state 21.
+                    config.sides.set(OfDevice::NotZero21, false);
+                }
+                config.sides = config.sides.union(conditions::left_alone_by_device(&config.machine, None));
+                return out.push(config);
+            }
+            Some(Incoming::Spdu(arrived)) => arrived,
+        };
         let Received { control, intact } = incoming.received;
         if config.machine.state() == State(20) {
             let Phase::Ready { since } = self.phase else { return };
@@ -249,6 +283,7 @@ impl DeviceOracle {
             }
             let path = config.machine.start();
             config.took(path);
+            config.sides.set(OfDevice::Started, true);
         }
         if config.machine.is_old(control.mcount) {
             if !intact && self.allows(29) {
@@ -257,6 +292,8 @@ impl DeviceOracle {
                 self.process(&mut tripped, at, incoming, false);
                 out.push(tripped);
             }
+            let alone = conditions::left_alone_by_device(&config.machine, Some(control.mcount));
+            config.sides = config.sides.union(alone);
             return out.push(config);
         }
         let first = config.machine.state() == State(21);
@@ -319,12 +356,14 @@ impl DeviceOracle {
         Some(other)
     }
 
-    fn process(&self, config: &mut DeviceConfig, at: u64, incoming: Incoming, valid: bool) {
-        let first = config.machine.state() == State(21);
+    fn process(&self, config: &mut DeviceConfig, at: u64, incoming: Arrived, valid: bool) {
+        self.decided(config, incoming, valid);
+        let state = config.machine.state();
+        let first = state == State(21);
         config.machine.set_sdset_ds(self.sdset_ds);
         let path = config.machine.process(incoming.received, valid);
         config.received = incoming.pd;
-        config.timer = Some(self.setup.watchdog(at, at));
+        config.restart(state, Some(self.setup.watchdog(at, at)));
         let mut free = Free::default();
         let status = config.machine.status();
         // The technology may report its safe state by SDset_DS; without upper tester nobody knows when.
@@ -340,6 +379,19 @@ impl DeviceOracle {
         config.took(path);
         let asked = valid.then_some(incoming.received.control.ch_f_ack_req);
         self.answer(config, free, path, asked);
+    }
+
+    /// Notes what decided, where nothing but the tables did.
+    fn decided(&self, config: &mut DeviceConfig, incoming: Arrived, valid: bool) {
+        let Arrived { received, parts, .. } = incoming;
+        let mcount = received.control.mcount;
+        let machine = &config.machine;
+        if machine.is_old(mcount) || valid != (received.intact && machine.counter_check(mcount)) {
+            return;
+        }
+        let known = self.setup.app && !self.sdset_ds_changed;
+        let technology = Technology { seen: self.setup.app, sdset_ds: known.then_some(self.sdset_ds) };
+        config.sides = config.sides.union(conditions::device(machine, received, parts, technology));
     }
 
     fn answer(&self, config: &mut DeviceConfig, free: Free, path: Path, asked: Option<bool>) {

@@ -6,6 +6,7 @@ use super::explain::{self, Mismatch, Words, data};
 use super::set::{self, Set};
 use super::setup::{App, Setup};
 use super::{Mask, explain_master};
+use crate::conditions::{self, OfMaster, Parts, Sides};
 use fsct_adapters::{Octets, Role, Service};
 use fsct_protocol::scl::master::Answer;
 use fsct_protocol::scl::{Master, Path, State, T, Var};
@@ -119,7 +120,16 @@ enum Phase {
 #[derive(Copy, Clone)]
 enum Incoming {
     Zero,
-    Answer(Answer, Pd),
+    Answer(Arrived),
+}
+
+/// An answer that is not all zero.
+#[derive(Copy, Clone)]
+struct Arrived {
+    answer: Answer,
+    /// `None` where no check was due.
+    parts: Option<Parts>,
+    pd: Pd,
 }
 
 /// The oracle of one port.
@@ -222,7 +232,15 @@ impl MasterOracle {
         let image = image.filter(|octets| octets.iter().any(|octet| *octet != 0));
         match self.phase {
             Phase::Off => return Ok(()),
-            Phase::Idle => return self.idle(image, app),
+            Phase::Idle => {
+                let verdict = self.idle(image, app);
+                if verdict.is_ok() {
+                    let mut sides = Sides::NONE;
+                    sides.set(OfMaster::Started, false);
+                    self.set.idle(sides);
+                }
+                return verdict;
+            }
             Phase::Ready { .. } => {}
         }
         let incoming = received.and_then(|octets| self.read(octets));
@@ -263,13 +281,18 @@ impl MasterOracle {
         if view.is_all_zero() {
             return Some(Incoming::Zero);
         }
-        let intact = view.signature_matches(self.setup.reading) && view.port_num() == self.setup.port.inverted();
-        Some(Incoming::Answer(Answer { status: view.status(), intact }, Pd::new(view.pd())?))
+        let parts = Parts {
+            signature: view.signature_matches(self.setup.reading),
+            port_num: view.port_num() == self.setup.port.inverted(),
+        };
+        let answer = Answer { status: view.status(), intact: parts.signature && parts.port_num };
+        Some(Incoming::Answer(Arrived { answer, parts: Some(parts), pd: Pd::new(view.pd())? }))
     }
 
     fn expire(&self, config: &mut MasterConfig, at: u64, window: Window) {
+        let state = config.machine.master.state();
         let path = config.machine.master.expire();
-        config.timer = Some(self.setup.watchdog_again(window, self.set.last_at, at));
+        config.expired(state, self.setup.watchdog_again(window, self.set.last_at, at));
         config.machine.sd = 1;
         self.send(config, path, false);
     }
@@ -281,6 +304,7 @@ impl MasterOracle {
                 out.push(config);
             }
             let path = config.machine.master.start();
+            config.sides.set(OfMaster::Started, true);
             self.send(&mut config, path, false);
             // What stood in the input image before the first SPDU may be looked at behind it (A30), or is gone by then.
             if let Some(Incoming::Answer(..)) = incoming {
@@ -288,42 +312,47 @@ impl MasterOracle {
             }
         }
         let state = config.machine.master.state();
-        let (answer, pd) = match incoming {
+        let arrived = match incoming {
             None => return out.push(config),
             Some(Incoming::Zero) => {
                 if state == State(7) && config.machine.master.get(Var::Mcount) == 7 && self.allows(5) {
                     let zero = Answer { status: Default::default(), intact: false };
-                    self.check(with(config, 5), at, zero, Pd::safe(self.setup.pd_in), out);
+                    let arrived = Arrived { answer: zero, parts: None, pd: Pd::safe(self.setup.pd_in) };
+                    self.check(with(config, 5), at, arrived, out);
                 }
+                config.sides = config.sides.union(conditions::left_alone_by_master(&config.machine.master, true));
                 return out.push(config);
             }
-            Some(Incoming::Answer(answer, pd)) => (answer, pd),
+            Some(Incoming::Answer(arrived)) => arrived,
         };
-        if config.machine.master.takes(answer.status.dcount_i) {
-            return self.check(config, at, answer, pd, out);
+        if config.machine.master.takes(arrived.answer.status.dcount_i) {
+            return self.check(config, at, arrived, out);
         }
         match state.0 {
             7 if self.allows(6) && !config.machine.foreign => {
                 let mut looked = with(config, 6);
                 looked.machine.foreign = true;
-                self.check(looked, at, answer, pd, out);
+                self.check(looked, at, arrived, out);
             }
-            5 if !answer.intact && self.allows(29) => self.check(with(config, 29), at, answer, pd, out),
+            5 if !arrived.answer.intact && self.allows(29) => self.check(with(config, 29), at, arrived, out),
             _ => {}
         }
+        config.sides = config.sides.union(conditions::left_alone_by_master(&config.machine.master, false));
         out.push(config);
     }
 
     /// An answer is checked: one way for every value the inputs may have been seen at.
-    fn check(&self, config: MasterConfig, at: u64, answer: Answer, pd: Pd, out: &mut Vec<MasterConfig>) {
+    fn check(&self, config: MasterConfig, at: u64, arrived: Arrived, out: &mut Vec<MasterConfig>) {
         let before = out.len();
         for ack in config.machine.ack.values() {
             for set_sd in config.machine.set_sd.values() {
-                let way = self.checked(config, at, answer, pd, (ack, set_sd));
+                let way = self.checked(config, at, arrived, (ack, set_sd));
                 let recovers = way.via.iter().any(|path| path.iter().any(|t| t == T(11)));
                 if recovers && config.machine.sd < SD_CYCLES && self.allows(13) {
                     // The acknowledgment stays armed while three SPDUs with SD go out.
-                    out.push(self.checked(with(config, 13), at, answer, pd, (false, set_sd)));
+                    let mut waits = self.checked(with(config, 13), at, arrived, (false, set_sd));
+                    waits.sides = config.sides;
+                    out.push(waits);
                 }
                 if !out[before..].iter().any(|other| same(other, &way)) {
                     out.push(way);
@@ -332,11 +361,17 @@ impl MasterOracle {
         }
     }
 
-    fn checked(&self, mut config: MasterConfig, at: u64, answer: Answer, pd: Pd, seen: (bool, bool)) -> MasterConfig {
+    fn checked(&self, mut config: MasterConfig, at: u64, arrived: Arrived, seen: (bool, bool)) -> MasterConfig {
+        let Arrived { answer, parts, pd } = arrived;
         let (ack, set_sd) = seen;
         let port = &mut config.machine;
         port.master.set_ch_f_ack_c(ack);
         port.master.set_set_sd_c(set_sd);
+        let state = port.master.state();
+        if let Some(parts) = parts.filter(|_| port.master.takes(answer.status.dcount_i)) {
+            let decided = conditions::master(&port.master, answer, parts, self.setup.app);
+            config.sides = config.sides.union(decided);
+        }
         let path = port.master.process(answer);
         (port.ack, port.set_sd) = (Seen::only(self.ack), Seen::only(self.set_sd));
         let taken = |number| path.iter().any(|t| t == T(number));
@@ -347,7 +382,8 @@ impl MasterOracle {
             _ => {}
         }
         config.received = pd;
-        config.timer = config.machine.master.timer_runs().then(|| self.setup.watchdog(at, at));
+        let window = config.machine.master.timer_runs().then(|| self.setup.watchdog(at, at));
+        config.restart(state, window);
         self.send(&mut config, path, answer.status.sd_set);
         config
     }

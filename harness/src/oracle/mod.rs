@@ -22,6 +22,7 @@ pub use ossde::OssdeOracle;
 pub use setup::{App, Setup};
 pub use tolerance::{Mask, Stance, Tolerance, Tolerances};
 
+use crate::conditions::Sides;
 use crate::walk::Walked;
 use fsct_adapters::{Octets, Role, Service};
 use fsct_protocol::scl::State;
@@ -108,6 +109,14 @@ impl Oracle {
         match self {
             Oracle::Device(oracle) => oracle.set().walked(),
             Oracle::Master(oracle) => oracle.set().walked(),
+        }
+    }
+
+    /// Which way conditions decided, over the whole case.
+    pub fn sides(&self) -> Sides {
+        match self {
+            Oracle::Device(oracle) => oracle.set().sides(),
+            Oracle::Master(oracle) => oracle.set().sides(),
         }
     }
 

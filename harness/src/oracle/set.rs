@@ -2,6 +2,7 @@
 
 use super::config::{self, Config, Machine, Snapshot, TRANSITIONS, Window};
 use super::{Mask, Mismatch};
+use crate::conditions::Sides;
 use crate::walk::Walked;
 use fsct_protocol::scl::{State, T};
 use fsct_protocol::spdu::Pd;
@@ -25,6 +26,7 @@ pub struct Set<M, S> {
     taken_before: [u64; TRANSITIONS],
     used_before: Mask,
     walked_before: Walked,
+    sides_before: Sides,
 }
 
 impl<M: Machine, S: Snapshot> Set<M, S> {
@@ -38,6 +40,7 @@ impl<M: Machine, S: Snapshot> Set<M, S> {
             taken_before: [0; TRANSITIONS],
             used_before: Mask::NONE,
             walked_before: Walked { pairs: 0, triples: 0, step_pairs: 0 },
+            sides_before: Sides::NONE,
         }
     }
 
@@ -46,6 +49,7 @@ impl<M: Machine, S: Snapshot> Set<M, S> {
         self.taken_before = self.taken();
         self.used_before = self.used();
         self.walked_before = self.walked();
+        self.sides_before = self.sides();
         self.configs.clear();
     }
 
@@ -131,6 +135,16 @@ impl<M: Machine, S: Snapshot> Set<M, S> {
         self.best().map_or(self.walked_before, |best| self.walked_before.union(best.trail.walked))
     }
 
+    /// Which way conditions decided, over the whole case.
+    pub fn sides(&self) -> Sides {
+        self.best().map_or(self.sides_before, |best| self.sides_before.union(best.sides))
+    }
+
+    /// Conditions decided while no SCL runs.
+    pub const fn idle(&mut self, sides: Sides) {
+        self.sides_before = self.sides_before.union(sides);
+    }
+
     /// Tolerances the DUT made use of, over the whole case.
     pub fn used(&self) -> Mask {
         self.used_before.union(self.best().map_or(Mask::NONE, |config| config.used))
@@ -160,6 +174,7 @@ pub fn timed<M: Machine, S: Snapshot>(
     mut receive: impl FnMut(Config<M, S>),
 ) {
     config.via = Default::default();
+    config.not_expired(at);
     if let Some(window) = config.timer.filter(|window| at >= window.earliest) {
         if at <= window.latest {
             receive(config);

@@ -15,6 +15,19 @@ fn goals() -> MachineInfo {
             feasible: texts(&["D-GOOD D-GOOD", "D-GOOD D-ERR"]),
             infeasible: vec![("D-ERR D-LEAVE".into(), "SDcycles is 3".into())],
         },
+        conditions: vec![condition("D22-PORTNUM", "T22 T25"), condition("DTIMER-21", "-")],
+        guards: Goal { feasible: texts(&["D22-PORTNUM true", "D22-PORTNUM false"]), infeasible: Vec::new() },
+        timers: Goal { feasible: Vec::new(), infeasible: vec![("DTIMER-21 expired".into(), "it does not run".into())] },
+    }
+}
+
+fn condition(id: &str, rows: &str) -> ConditionInfo {
+    ConditionInfo {
+        id: id.into(),
+        state: "22".into(),
+        rows: rows.into(),
+        asks: "PortNum".into(),
+        clause: "11.5.3".into(),
     }
 }
 
@@ -47,6 +60,26 @@ fn what_was_taken_is_counted_and_the_rest_is_named() {
     let html = page("walked", &run);
     assert!(html.contains("1 of 2 step pairs were taken; never: <code>D-GOOD D-ERR</code>"));
     assert!(html.contains("D-GOOD = T24 T22 T23") && !html.contains("although it cannot be"));
+}
+
+#[test]
+fn a_condition_that_went_one_way_only_is_named_with_the_nearest_case() {
+    let mut run = walked(&[]);
+    let Some(case) = run.cases.first_mut() else { panic!("there is a case") };
+    case.walked.guards = vec!["D22-PORTNUM true".into()];
+    case.walked.timers = vec!["DTIMER-21 expired".into()];
+    let key = case.key.clone();
+    let summary = Summary::of(&run);
+    let asked = summary.coverage[0].asked.as_ref().expect("there are goals");
+    assert_eq!(asked.said(), "guards 0 of 1 both ways, timers 0 of 0");
+    assert_eq!(asked.guards.missing, ["D22-PORTNUM false"]);
+    assert_eq!(asked.nearest["D22-PORTNUM false"], key);
+    assert_eq!(asked.timers.contradicting["DTIMER-21 expired"], "infeasible: it does not run");
+    let html = page("asked", &run);
+    let at = html.find("<details open><summary>Guards and timers").expect("the table stands open");
+    let table = &html[at..at + html[at..].find("</details>").expect("it ends")];
+    assert!(table.contains("never") && table.contains("nearest is") && table.contains("cannot be: it does not run"));
+    assert!(html.contains("✗ Seen although it cannot be: </span><code>DTIMER-21 expired</code>"));
 }
 
 #[test]
