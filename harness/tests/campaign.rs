@@ -61,6 +61,77 @@ fn what_the_signature_cannot_detect_is_no_fault_of_the_dut() {
     assert!(file(&out, "campaign.json").contains("\"failed\": 0"));
 }
 
+/// Bursts no longer than the signature never repair it, so every one of them has to be detected.
+#[rstest]
+#[case("crc16", "16")]
+#[case("crc32", "32")]
+fn the_references_detect_every_burst_that_the_signature_does(
+    #[case] mode: &str,
+    #[case] longest: &str,
+    #[values("device", "master")] role: &str,
+) {
+    let dut = format!("inproc:reference-{role}");
+    let out = folder(&format!("bursts-{mode}-{role}"));
+    let args = ["bits", "--bursts", longest, "--sample", "20", "--mode", mode, "--dut", &dut];
+    let (code, told, errors) = campaign(&args, &out);
+    assert_eq!(code, 0, "{told}{errors}");
+    assert!(told.contains("none undetected"), "{told}");
+    let report = file(&out, "campaign.json");
+    assert!(report.contains(&format!("\"burst {longest}\"")) && report.contains("\"iec2022\""), "{report}");
+    assert!(!told.contains("carry the right signature again"), "{told}");
+}
+
+/// The profile says how late a DUT may answer; one that is as late is not failed for it.
+#[rstest]
+fn a_late_dut_passes_with_the_profile_for_it(
+    #[values("device", "master")] role: &str,
+    #[values("1", "3")] latency: &str,
+) {
+    let dut = format!("inproc:reference-{role}?latency={latency}");
+    let profile = format!("{role}-late-{latency}");
+    let random: &[&str] = &["random", "--exchanges", "10000", "--faults", "1500"];
+    for what in [random, &["bits", "--flips", "1..2", "--length", "5"], &["bits", "--flips", "1", "--length", "31"]] {
+        let args = [what, &["--dut", &dut, "--profile", &profile]].concat();
+        let (code, told, errors) = campaign(&args, &folder(&format!("late-{role}-{latency}")));
+        assert_eq!(code, 0, "{what:?}: {told}{errors}");
+    }
+}
+
+/// A DUT that is later than the profile says has not been tested; that says nothing against it.
+#[rstest]
+fn a_late_dut_with_another_profile_is_not_failed(
+    #[values("device", "master")] role: &str,
+    #[values("random", "bits")] what: &str,
+) {
+    let dut = format!("inproc:reference-{role}?latency=2");
+    let (code, told, errors) = campaign(&[what, "--dut", &dut], &folder(&format!("later-{role}-{what}")));
+    assert_eq!(code, 5, "{told}{errors}");
+    assert!(!told.contains("pass"), "{told}");
+}
+
+/// However many DUTs are reached at a time, the result is the same, found or not found.
+#[rstest]
+#[case("device", "reference-device", 0)]
+#[case("master", "reference-master", 0)]
+#[case("mutant", "reference-device?mutant=d-comm-err-never-reported", 1)]
+fn the_number_of_jobs_does_not_change_the_result(#[case] name: &str, #[case] dut: &str, #[case] expected: i32) {
+    let dut = format!("inproc:{dut}");
+    let run = |jobs: &str| {
+        let out = folder(&format!("jobs-{name}-{jobs}"));
+        let args = ["bits", "--flips", "1..2", "--mode", "crc16", "--dut", &dut, "--jobs", jobs];
+        let (code, told, errors) = campaign(&args, &out);
+        assert_eq!(code, expected, "{told}{errors}");
+        let lengths = told.lines().filter(|line| line.starts_with("v1.1") || line.starts_with("iec2022")).count();
+        (file(&out, "campaign.json"), lengths)
+    };
+    let (report, lengths) = run("1");
+    assert_eq!((report.clone(), lengths), run("4"));
+    if expected == 0 {
+        assert_eq!(lengths, 8, "SPDUs of 4 to 7 octets in both editions");
+        assert!(report.contains("\"undetected_fraction_at_most_95\""), "{report}");
+    }
+}
+
 #[rstest]
 #[case("reference-device?mutant=sd-cycles-2")]
 #[case("reference-device?mutant=counter-check-missing")]
@@ -137,6 +208,9 @@ fn one_seed_gives_one_result() {
 #[case(&["bits", "--flips", "0"], 2)]
 #[case(&["bits", "--flips", "3..9"], 2)]
 #[case(&["bits", "--length", "99"], 4)]
+#[case(&["bits", "--bursts", "30"], 2)]
+#[case(&["bits", "--sample", "30"], 2)]
+#[case(&["bits", "--jobs", "0"], 2)]
 #[case(&["random", "--pd", "77"], 4)]
 #[case(&["random", "--faults", "0", "--exchanges", "1000"], 5)]
 #[case(&["random", "--dut", "inproc:no-such"], 2)]

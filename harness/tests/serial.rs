@@ -75,6 +75,32 @@ fn a_reference_on_a_line_passes_run_after_run(#[case] role: &str, #[case] filter
     }
 }
 
+/// Round trips on a line vary more than a cycle takes; nothing of it is held against the DUT.
+#[rstest]
+fn a_campaign_finds_nothing_on_a_line_with_a_real_clock(#[values("device", "master")] role: &str) {
+    let reference = Simulated::new(&[role, "--clock", "real"]);
+    let folder = Folder::new(&format!("serial-campaign-{role}"));
+    for what in [["random", "--exchanges", "300", "--faults", "60"], ["bits", "--flips", "1", "--length", "4"]] {
+        let args = [&["campaign"], &what[..], &["--mode", "crc16", "--dut", &reference.url, "--out", &folder.out()]];
+        let run = fsct(&args.concat()).output().expect("it runs");
+        assert_eq!(run.status.code(), Some(0), "{run:?}");
+    }
+}
+
+/// The line serves one at a time: the campaign gives it up before it repeats what failed.
+#[test]
+fn what_a_campaign_finds_on_a_line_is_repeated_and_shrunk() {
+    let mutant = Simulated::new(&["device", "--mutant", "d-comm-err-never-reported"]);
+    let folder = Folder::new("serial-campaign-mutant");
+    let common = ["--mode", "crc16", "--dut", &mutant.url, "--out", &folder.out()];
+    for what in [["random", "--exchanges", "3000", "--faults", "300"], ["bits", "--flips", "1", "--length", "4"]] {
+        let run = fsct(&[&["campaign"], &what[..], &common].concat()).output().expect("it runs");
+        assert_eq!(run.status.code(), Some(1), "{run:?}");
+        let told = String::from_utf8_lossy(&run.stdout);
+        assert!(told.contains("  replay   fsct campaign replay "), "{told}");
+    }
+}
+
 #[test]
 fn what_varies_on_the_way_to_a_real_clock_is_uncertain() {
     let reference = Simulated::new(&["device", "--clock", "real"]);

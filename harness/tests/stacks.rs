@@ -36,6 +36,24 @@ fn a_stack_in_c_conforms_as_a_program_and_keeps_to_its_memory(#[case] name: &str
     conforms(&format!("exec:{}", program.display()), &format!("c-exec-{name}"));
 }
 
+/// Errors by the thousand: random ones, and every corruption of up to two bits of an SPDU.
+#[rstest]
+#[case::device("device", DEVICE)]
+#[case::master("master", MASTER)]
+fn a_stack_in_c_passes_campaigns(#[case] name: &str, #[case] sources: &[&str]) {
+    let Some(library) = build(Kind::Library, sources, &[]) else { return };
+    let Some(program) = build(Kind::Program, &[CLIENT, sources].concat(), SANITIZED) else { return };
+    for dut in [format!("lib:{}", library.display()), format!("exec:{}", program.display())] {
+        let out = Folder::new(&format!("c-campaign-{name}"));
+        let random: &[&str] = &["random", "--exchanges", "10000", "--faults", "1500"];
+        for what in [random, &["bits", "--flips", "1..2", "--length", "6"], &["bits", "--flips", "1", "--length", "31"]]
+        {
+            let outcome = fsct(&[&["campaign"], what, &["--dut", &dut, "--out", &out.out()]].concat());
+            assert_eq!(outcome.code, 0, "{dut} {what:?}: {outcome:?}");
+        }
+    }
+}
+
 #[rstest]
 #[case::counter_check_missing(1, "11.5.3 Table 40 T25")]
 #[case::two_sd_cycles(2, "11.5.3 Table 40 T29")]

@@ -9,7 +9,7 @@ use super::run::{candidate_profile, given_profiles};
 use super::{Cases, NOTHING_RAN, RIG, USAGE, fail, print};
 use crate::campaign::Bench;
 use crate::injection::shrink::shrink;
-use crate::injection::{Halt, Ran, Script, Target};
+use crate::injection::{Halt, Ran, Script, Tally, Target};
 use crate::library::Library;
 use crate::profile::{Profile, default_profile};
 use clap::Subcommand;
@@ -153,30 +153,40 @@ impl Ground {
         Ok(path)
     }
 
-    /// Carries a list out on a fresh DUT.
-    fn perform(&self, target: &Target<'_>, script: &Script) -> Option<Ran> {
-        let mut bench = bench::connect(&self.address).ok()?;
-        Some(target.perform(&mut bench, script))
+    /// Carries a list out over a fresh connection.
+    fn perform(&self, target: &Target<'_>, script: &Script) -> Ran {
+        match bench::connect(&self.address) {
+            Ok(mut bench) => target.perform(&mut bench, script),
+            Err(error) => {
+                Ran { tally: Tally::default(), halt: Some((0, Halt::Bench(error.to_string()))), record: None }
+            }
+        }
     }
 
-    /// Shrinks what failed, and tells it with the line that repeats it. `number` counts the failures of a campaign from 1.
+    /// Shrinks what failed, and tells it with the line that repeats it. `number` counts the failures of a campaign from 1. No
+    /// connection of the campaign may be left: there are DUTs that serve one at a time.
     fn tell(&self, target: &Target<'_>, script: &Script, kind: &str, number: usize) -> Result<(), u8> {
-        let fails = |script: &Script| {
-            let halt = self.perform(target, script).and_then(|ran| ran.halt);
-            matches!(halt, Some((_, Halt::Failure(finding))) if finding.kind == kind)
-        };
+        let same = |ran: &Ran| matches!(&ran.halt, Some((_, Halt::Failure(finding))) if finding.kind == kind);
+        let fails = |script: &Script| same(&self.perform(target, script));
         let suffix = if number == 1 { String::new() } else { format!("-{number}") };
-        if !fails(script) {
+        let again = self.perform(target, script);
+        if !same(&again) {
             let path = self.write(&format!("actions{suffix}.jsonl"), &script.to_text())?;
-            print(
-                "  it did not fail again on a fresh DUT: what came before in the campaign matters, or the DUT varies",
-            );
+            print(match again.halt {
+                Some((_, Halt::Bench(why) | Halt::Inconclusive(why))) => {
+                    format!("  it could not be tried again over a fresh connection: {}", visible(&why))
+                }
+                Some((_, Halt::Interrupted)) => "  it was not tried again: stopped by the user".to_owned(),
+                Some((_, Halt::Failure(_))) | None => "  it did not fail so again over a fresh connection: what came \
+                     before in the campaign matters, or the DUT varies"
+                    .to_owned(),
+            });
             print(format!("  actions  {}", path.display()));
             return Ok(());
         }
         let (shrunk, tries) = shrink(script, fails);
         let path = self.write(&format!("actions{suffix}.jsonl"), &shrunk.to_text())?;
-        if let Some((json, text)) = self.perform(target, &shrunk).and_then(|ran| ran.record) {
+        if let Some((json, text)) = self.perform(target, &shrunk).record {
             self.write(&format!("failure{suffix}.json"), &json)?;
             print(visible_lines(text.trim_end()));
         }
@@ -211,7 +221,13 @@ fn visible_lines(text: &str) -> String {
     text.lines().map(visible).collect::<Vec<_>>().join("\n")
 }
 
-/// A bar on a terminal, nothing elsewhere.
+/// One line on a terminal: how much is done, how long it took and will take. Nothing elsewhere.
 fn progress(length: u64) -> indicatif::ProgressBar {
-    if std::io::stderr().is_terminal() { indicatif::ProgressBar::new(length) } else { indicatif::ProgressBar::hidden() }
+    if !std::io::stderr().is_terminal() {
+        return indicatif::ProgressBar::hidden();
+    }
+    let style = indicatif::ProgressStyle::with_template(
+        "{wide_bar} {human_pos} of {human_len} ({percent} %), {elapsed} and {eta} to go",
+    );
+    indicatif::ProgressBar::new(length).with_style(style.unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()))
 }

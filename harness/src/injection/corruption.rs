@@ -1,14 +1,18 @@
-//! All corruptions of an SPDU with so many bits inverted, or all bursts up to a length.
+//! All corruptions of an SPDU with so many bits inverted, all bursts of a length, or some of those drawn at random.
 
 use fsct_protocol::spdu::MAX_SPDU;
+use rand_pcg::Pcg64Mcg;
+use rand_pcg::rand_core::{Rng, SeedableRng};
 
 /// Bits that are inverted, as octets to combine with an SPDU by exclusive or.
 pub type Mask = [u8; MAX_SPDU];
 
-/// The most bits a corruption can have here, and the longest burst.
+/// The most bits a corruption can have here, bursts apart.
 pub const MAX_FLIPS: usize = 8;
-/// The longest burst.
-pub const MAX_BURST: usize = 24;
+/// The longest burst: as long as the longer signature, so that every one of them has to be detected there.
+pub const MAX_BURST: usize = 32;
+/// The longest burst of which all are tried in one go: a bit more doubles their number.
+pub const MAX_ALL_BURSTS: usize = 24;
 
 /// Which corruptions.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -40,6 +44,9 @@ pub struct Corruptions {
     at: [usize; MAX_FLIPS],
     /// Burst: the inner bits.
     inner: u32,
+    /// Burst: how many more are to be drawn, and from what; `None`: all come.
+    drawn: Option<(u64, Pcg64Mcg)>,
+    total: u64,
     done: bool,
 }
 
@@ -48,7 +55,32 @@ impl Corruptions {
     pub fn new(kind: Kind, octets: usize) -> Corruptions {
         let mut at = [0; MAX_FLIPS];
         at.iter_mut().enumerate().for_each(|(index, place)| *place = index);
-        Corruptions { kind, bits: 8 * octets, at, inner: 0, done: kind.count(octets) == 0 }
+        let total = kind.count(octets);
+        Corruptions { kind, bits: 8 * octets, at, inner: 0, drawn: None, total, done: total == 0 }
+    }
+
+    /// So many of the bursts of a length, drawn at random; all of them when there are no more.
+    pub fn drawn(length: usize, octets: usize, number: u64, seed: u64) -> Corruptions {
+        let mut all = Corruptions::new(Kind::Burst(length), octets);
+        if number < all.total {
+            all.total = number;
+            all.drawn = Some((number, Pcg64Mcg::seed_from_u64(seed ^ ((length as u64) << 8) ^ octets as u64)));
+            all.draw(length);
+        }
+        all
+    }
+
+    /// How many there are, those that have come included.
+    pub fn total(&self) -> u64 {
+        self.total
+    }
+
+    fn draw(&mut self, length: usize) {
+        let Some((left, rng)) = &mut self.drawn else { return };
+        self.done = *left == 0;
+        *left = left.saturating_sub(1);
+        self.at[0] = (rng.next_u64() % (self.bits - length + 1) as u64) as usize;
+        self.inner = (rng.next_u64() % (1 << length.saturating_sub(2))) as u32;
     }
 
     fn advance_flips(&mut self, flips: usize) {
@@ -65,6 +97,9 @@ impl Corruptions {
     }
 
     fn advance_burst(&mut self, length: usize) {
+        if self.drawn.is_some() {
+            return self.draw(length);
+        }
         self.inner += 1;
         if self.inner >> length.saturating_sub(2) != 0 {
             self.inner = 0;
@@ -111,6 +146,10 @@ pub fn bits(mask: &Mask) -> Vec<u16> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fsct_protocol::ProtMode;
+    use fsct_protocol::crc::Reading;
+    use fsct_protocol::spdu::{Control, OutSpdu, Pd, Port, View};
+    use rstest::rstest;
     use std::collections::BTreeSet;
 
     #[test]
@@ -138,6 +177,55 @@ mod tests {
             }
         }
         assert_eq!(Kind::Burst(40).count(4), 0);
+    }
+
+    #[test]
+    fn drawn_bursts_are_bursts_of_that_length_anywhere_in_the_spdu() {
+        let drawn = |seed| Corruptions::drawn(32, 7, 2_000, seed).map(|mask| bits(&mask)).collect::<Vec<_>>();
+        let all = drawn(1);
+        assert_eq!(all.len(), 2_000);
+        assert!(all.iter().all(|bits| bits[bits.len() - 1] - bits[0] == 31));
+        assert_eq!(all.iter().map(|bits| bits[0]).collect::<BTreeSet<_>>().len(), 25, "they start at every bit");
+        assert!(all.iter().collect::<BTreeSet<_>>().len() > 1_990);
+        assert_eq!((drawn(1), drawn(2) == all), (all, false));
+        let few = Corruptions::drawn(3, 4, 1_000, 1);
+        assert_eq!((few.total(), few.count() as u64), (60, Kind::Burst(3).count(4)));
+    }
+
+    /// Corruptions of a good SPDU that leave it a right signature.
+    fn repaired(mode: ProtMode, pd: usize, all: impl Fn(usize) -> Corruptions) -> usize {
+        let pd = Pd::new(&vec![0xA5; pd]).expect("not too long");
+        let control = Control { mcount: 3, set_sd: false, ch_f_ack_req: false };
+        let good = OutSpdu { pd, port: Port::ONE, control }.wire().emit(mode, Reading::default());
+        let good = good.octets();
+        let is_right = |mask: &Mask| {
+            let bad: Vec<u8> = good.iter().zip(mask).map(|(octet, mask)| octet ^ mask).collect();
+            View::new(&bad, mode, pd.octets().len()).expect("as long").signature_matches(Reading::default())
+        };
+        all(good.len()).filter(is_right).count()
+    }
+
+    /// The signature stands behind what it secures, and its polynomial has a constant term: such a polynomial divides no burst
+    /// shorter than itself.
+    #[rstest]
+    #[case(ProtMode::Crc16, 0, 16)]
+    #[case(ProtMode::Crc16, 3, 16)]
+    #[case(ProtMode::Crc32, 0, 32)]
+    #[case(ProtMode::Crc32, 25, 32)]
+    fn no_burst_up_to_the_length_of_the_signature_repairs_it(
+        #[case] mode: ProtMode,
+        #[case] pd: usize,
+        #[case] longest: usize,
+    ) {
+        for length in 1..=longest {
+            let drawn = |octets| Corruptions::drawn(length, octets, 4_000, 1);
+            assert_eq!(repaired(mode, pd, drawn), 0, "{length}");
+        }
+    }
+
+    #[test]
+    fn a_burst_one_bit_longer_can_repair_it() {
+        assert_ne!(repaired(ProtMode::Crc16, 3, |octets| Corruptions::new(Kind::Burst(17), octets)), 0);
     }
 
     #[test]

@@ -6,7 +6,7 @@
 //! needs two good answers with an acknowledgment between them (T13, T11).
 
 use super::action::{Action, Script};
-use super::corruption::{Corruptions, Kind, Mask, bits};
+use super::corruption::{Corruptions, Mask, bits};
 use super::finding::{Finding, Halt};
 use super::stage::{Counts, Stage, Tally, Target};
 use crate::campaign::Bench;
@@ -70,9 +70,8 @@ struct Segment {
 
 impl<'s> Sweep<'s> {
     /// Ready to begin.
-    pub fn new(target: &'s Target<'s>, variant: Variant, kind: Kind, seed: u64) -> Sweep<'s> {
-        let pd = if target.profile.role == Role::Device { variant.pd_out } else { variant.pd_in };
-        let corruptions = Corruptions::new(kind, variant.mode.spdu_octets(pd.into())).peekable();
+    pub fn new(target: &'s Target<'s>, variant: Variant, corruptions: Corruptions, seed: u64) -> Sweep<'s> {
+        let corruptions = corruptions.peekable();
         Sweep { target, variant, seed, corruptions, queue: Vec::new(), outcome: Outcome::default() }
     }
 
@@ -82,11 +81,11 @@ impl<'s> Sweep<'s> {
     }
 
     /// Goes on with a DUT that is switched on for it, up to the end or the first corruption that is not detected; that one
-    /// counts as done.
+    /// counts as done. `told` hears how many are done; what it answers is whether to go on.
     ///
     /// # Errors
     /// [`Halt`] when the DUT did not come to operation or was lost. A failure outside of a corruption is one too.
-    pub fn run(&mut self, bench: &mut Bench, mut told: impl FnMut(u64)) -> Result<Option<Undetected>, Halt> {
+    pub fn run(&mut self, bench: &mut Bench, mut told: impl FnMut(u64) -> bool) -> Result<Option<Undetected>, Halt> {
         let (target, variant, seed) = (self.target, self.variant, self.seed);
         target.operate(
             bench,
@@ -97,7 +96,9 @@ impl<'s> Sweep<'s> {
                     if let Some(undetected) = self.batch(session, tester)? {
                         return Ok(Some(undetected));
                     }
-                    told(self.outcome.counts.injected);
+                    if !told(self.outcome.counts.injected) {
+                        return Err(Halt::Interrupted);
+                    }
                 }
                 Ok(None)
             },
@@ -122,6 +123,7 @@ impl<'s> Sweep<'s> {
         }
         let (items, next) = (writer.items, writer.count);
         let mut current = 0;
+        session.slipped = false;
         let went = session.carry_out(&items, |index, link| {
             self.outcome.exchanges += 1;
             let Some(segment) = segments.get_mut(current) else { return };
@@ -155,6 +157,9 @@ impl<'s> Sweep<'s> {
             return Ok(Some(found));
         }
         if let Some(silent) = silent {
+            if session.slipped {
+                return Err(Halt::slipped("no reaction to a falsified SPDU"));
+            }
             let found = self.undetected(&segments, silent, &segments[silent], no_reaction(setup.role));
             self.queue = segments[done..].iter().map(|segment| segment.mask).collect();
             return Ok(Some(found));

@@ -58,6 +58,13 @@ impl From<Stop> for Halt {
 }
 
 impl Halt {
+    /// Something that would be a failure had the exchanges reached the DUT in time.
+    pub fn slipped(what: &str) -> Halt {
+        Halt::Inconclusive(format!(
+            "{what}, but exchanges reached the DUT more than half a MasterCycleTime late, so it is not held against it"
+        ))
+    }
+
     /// A start condition that was not reached: where a DUT that presents SPDUs contradicts the tables it fails; anything else says
     /// nothing.
     pub fn not_started(reason: Option<&Reason>, answers: bool) -> Halt {

@@ -17,6 +17,7 @@ use fsct_protocol::spdu::{Pd, View, Wire, inv3, succ};
 use fsct_reports::record::{Execution, Verdict};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::SeedableRng;
+use std::cell::Cell;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::atomic::AtomicBool;
 
@@ -161,6 +162,7 @@ impl Target<'_> {
         let mut tally = Tally::default();
         let mut at = 0;
         let mut trace = Vec::new();
+        let passed = Cell::new(false);
         let went = self.operate(
             bench,
             script.variant,
@@ -174,9 +176,16 @@ impl Target<'_> {
                     stage.act(action)?;
                 }
                 at = script.actions.len() + 1;
-                stage.recover()
+                let back = stage.recover();
+                passed.set(back.is_ok());
+                back
             },
-            |session| trace = session.told().entries,
+            // Only what failed is told: to put a trace into words takes as long as many exchanges.
+            |session| {
+                if !passed.get() {
+                    trace = session.told().entries;
+                }
+            },
         );
         let halt = match went {
             Ok(Ok(())) => None,
@@ -242,6 +251,7 @@ impl<'s, 'd> Stage<'s, 'd> {
         let profile = self.session.profile;
         let exchanges = (LIVENESS_CYCLES + 2) * (profile.answer_latency + 1)
             + 2 * profile.watchdog_ns().div_ceil(profile.master_cycle_time_ns);
+        self.session.slipped = false;
         for _ in 0..exchanges {
             if self.partner.operates(self.session, self.tester) {
                 return Ok(());
@@ -250,6 +260,9 @@ impl<'s, 'd> Stage<'s, 'd> {
         }
         if self.partner.operates(self.session, self.tester) {
             return Ok(());
+        }
+        if self.session.slipped {
+            return Err(Halt::slipped("no operation within 8 SCL cycles plus 2 FSP_Watchdog"));
         }
         let clause = match self.session.role() {
             Role::Device => "11.5.3 (R-11.5.3-22)",

@@ -55,6 +55,7 @@ pub fn run(args: &Args) -> Result<u8, u8> {
     let mut tally = Tally::default();
     let ended = campaign.run(&target, &mut bench, &mut tally, |exchanges| bar.set_position(exchanges));
     bar.finish_and_clear();
+    drop(bench);
     let failed = matches!(&ended, Some((_, _, Halt::Failure(_))));
     let sum = tally.sum();
     // A failure stands for one fault that was not dealt with, whether a fault or a good SPDU showed it.
