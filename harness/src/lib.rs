@@ -14,6 +14,7 @@ pub mod injection;
 pub mod keeper;
 pub mod ledger;
 pub mod library;
+pub mod limits;
 pub mod link;
 pub mod matrix;
 pub mod oracle;

@@ -3,6 +3,7 @@
 use crate::case::{self, Case, Covered, Start, Suite, model::Action, model::Step};
 use crate::coverage::Coverage;
 use crate::ledger::{Class, Ledger};
+use crate::limits;
 use crate::matrix::{self, Matrix};
 use crate::oracle::Tolerances;
 use crate::problem::{Problem, Source, suggestion};
@@ -21,7 +22,7 @@ fn embedded_sources() -> Vec<Arc<Source>> {
     EMBEDDED.iter().map(source).collect()
 }
 
-/// Suites, start conditions, ledger, error matrix, tolerances and profiles.
+/// Suites, start conditions, ledger, error matrix, tolerances, limits and profiles.
 #[derive(Debug)]
 pub struct Library {
     /// Suites by name.
@@ -34,6 +35,8 @@ pub struct Library {
     pub matrix: Option<Matrix>,
     /// Tolerances.
     pub tolerances: Tolerances,
+    /// Times and electrical limits; cases of one's own do without.
+    pub limits: limits::Table,
     /// Profiles by name.
     pub profiles: BTreeMap<String, Profile>,
     /// What a DUT can be led through, by its role.
@@ -103,6 +106,7 @@ impl Library {
         let mut ledger = Ledger::default();
         let mut matrix = None;
         let mut tolerances = None;
+        let mut limits = limits::Table::default();
         let mut profiles = BTreeMap::new();
         let mut coverage = BTreeMap::new();
         for source in &sources {
@@ -127,9 +131,10 @@ impl Library {
                 (_, "tolerances.yaml") => {
                     gather(Tolerances::parse(source), &mut problems, |found| tolerances = Some(found));
                 }
+                (_, "limits.yaml") => gather(limits::parse(source), &mut problems, |found| limits = found),
                 _ => {
                     problems.push(Problem::without_place(&source.name, "is in no known place").help(
-                        "known are requirements/, suites/, profiles/, coverage/, starts.yaml, error-matrix.yaml and tolerances.yaml",
+                        "known are requirements/, suites/, profiles/, coverage/, starts.yaml, error-matrix.yaml, tolerances.yaml and limits.yaml",
                     ))
                 }
             }
@@ -138,7 +143,7 @@ impl Library {
         suites.sort_by_key(|suite: &Suite| suite.group.as_deref() == Some(matrix::GROUP));
         match tolerances {
             Some(tolerances) if problems.is_empty() => {
-                Ok(Library { suites, starts, ledger, matrix, tolerances, profiles, coverage })
+                Ok(Library { suites, starts, ledger, matrix, tolerances, limits, profiles, coverage })
             }
             Some(_) => Err(problems),
             None => {
@@ -231,6 +236,7 @@ impl Library {
                 }
             }
         }
+        self.limits.check(&self.ledger, &mut problems);
         for requirement in self.ledger.iter() {
             let cited = cited.contains(requirement.id.as_str());
             let message = match (requirement.class, cited) {

@@ -42,6 +42,7 @@ pub fn run(args: &Args) -> u8 {
     let cases = library.cases().count();
     let points: usize = library.cases().map(|case| case.expand(&EVERYTHING).map_or(0, |all| all.points.len())).sum();
     print(format!("{cases} cases, {points} points of their sweeps, {} start conditions: sound", library.starts.len()));
+    print(format!("{} limits: sound", library.limits.limits.iter().count()));
     let records = library.ledger.iter().count();
     let classes: Vec<String> = Class::ALL
         .iter()

@@ -1,15 +1,16 @@
-//! `fsct explain ID`: what a case, a requirement or a tolerance says, and what hangs on it; `fsct explain --matrix`.
+//! `fsct explain ID`: what a case, a requirement, a tolerance or a limit says, and what hangs on it; `fsct explain --matrix`.
 
 use super::{Cases, USAGE, fail, print};
 use crate::library::Library;
 use crate::oracle::Tolerances;
 use crate::problem::suggestion;
+use fsct_lines::{Limit, Outside, Row, Subject, Unit};
 use fsct_protocol::Edition;
 
 /// Arguments of `fsct explain`.
 #[derive(clap::Args, Debug)]
 pub struct Args {
-    /// FSD-0231, R-11.5.3-09 or A19
+    /// FSD-0231, R-11.5.3-09, A19 or t_RP
     #[arg(required_unless_present = "matrix")]
     id: Option<String>,
     /// Print the error matrix: error class x state x direction, with the case that shows it
@@ -34,11 +35,13 @@ pub fn run(args: &Args) -> u8 {
             None => fail(USAGE, "these cases come without an error matrix"),
         };
     };
-    if case(&library, id) || requirement(&library, id) || tolerance(&library, id) {
+    if case(&library, id) || requirement(&library, id) || tolerance(&library, id) || limit(&library, id) {
         return 0;
     }
-    let known: Vec<&str> = library.cases().map(|case| case.id.as_str()).chain(library.ledger.ids()).collect();
-    fail(USAGE, format!("there is no case, requirement or tolerance `{id}`; {}", suggestion(id, known)))
+    let symbols = library.limits.limits.iter().map(|limit| limit.symbol.as_str());
+    let known: Vec<&str> =
+        library.cases().map(|case| case.id.as_str()).chain(library.ledger.ids()).chain(symbols).collect();
+    fail(USAGE, format!("there is no case, requirement, tolerance or limit `{id}`; {}", suggestion(id, known)))
 }
 
 fn case(library: &Library, id: &str) -> bool {
@@ -92,6 +95,62 @@ fn tolerance(library: &Library, id: &str) -> bool {
     let Some(entry) = Tolerances::number(id).and_then(|number| library.tolerances.get(number)) else { return false };
     print(format!("{id}  {} ({})\n{}", entry.name, entry.stance, entry.text));
     true
+}
+
+fn limit(library: &Library, symbol: &str) -> bool {
+    let Some(limit) = library.limits.limits.get(symbol) else { return false };
+    let dut = match limit.dut {
+        Subject::Device => "FS-Device",
+        Subject::Master => "FS-Master port",
+        Subject::Both => "FS-Device and FS-Master port",
+        Subject::Line => "cable",
+    };
+    print(format!("{symbol}  {} ({dut}, {})", limit.about, limit.verify.name()));
+    for edition in Edition::ALL {
+        print(match limit.row(edition) {
+            Some(row) => format!("{edition}: {}", values(limit, row)),
+            None => format!("{edition}: no such limit"),
+        });
+    }
+    let open = limit.open.join(", ");
+    for (what, text) in [("why", limit.why.as_deref()), ("reading in force", Some(open.as_str()))] {
+        if let Some(text) = text.filter(|text| !text.is_empty()) {
+            print(format!("{what}: {text}"));
+        }
+    }
+    for id in &limit.requirements {
+        if let Some(record) = library.ledger.get(id) {
+            print(format!("{id} ({}, {}): {}", clauses(record), record.level.name(), record.text));
+        }
+    }
+    true
+}
+
+/// `500 us to 1000 us (5.4, Table 7)`.
+fn values(limit: &Limit, row: &Row) -> String {
+    let one = |value: Option<f64>, from: &Option<String>| {
+        let value = value.map(|value| match limit.unit {
+            Unit::One => value.to_string(),
+            unit => format!("{value} {}", unit.name()),
+        });
+        match (value, from) {
+            (Some(value), Some(from)) => Some(format!("{from} (else {value})")),
+            (value, from) => value.or(from.clone()),
+        }
+    };
+    let range = match (one(row.min, &row.min_from), one(row.max, &row.max_from)) {
+        (Some(min), Some(max)) => format!("{min} to {max}"),
+        (Some(min), None) => format!("at least {min}"),
+        (None, Some(max)) => format!("at most {max}"),
+        (None, None) => "no value".to_owned(),
+    };
+    let outside = match (row.base, row.outside) {
+        (true, _) => "; base standard only, recorded and not judged",
+        (_, Outside::Fail) => "",
+        (_, Outside::Remark) => "; a value outside is a remark",
+        (_, Outside::Recorded) => "; recorded, not judged",
+    };
+    format!("{range} ({}){outside}", row.clause)
 }
 
 fn clauses(record: &crate::ledger::Requirement) -> String {
