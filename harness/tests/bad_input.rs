@@ -185,7 +185,12 @@ fn a_limit_says_what_is_wrong_with_it() {
   verify: measured
 ";
     let problems = fsct_harness::limits::parse(&source(text)).expect_err("it is full of mistakes");
-    assert_snapshot!(told(problems));
+    let told = told(problems);
+    for what in
+        ["devise", "mikro", "exceeds the largest", "`min` has to be a number", "perhaps", "`L1`", "needs the values"]
+    {
+        assert!(told.contains(what), "{what}: {told}");
+    }
 }
 
 #[test]
@@ -203,7 +208,9 @@ fn a_limit_stands_once_and_names_what_there_is() {
     let once = fsct_harness::limits::parse(&source(limit)).expect("it reads");
     let mut problems = Vec::new();
     once.check(&Library::embedded().expect("sound").ledger, &mut problems);
-    // Of the quantities without a limit the one with a wrong unit is enough.
-    problems.truncate(3);
-    assert_snapshot!(told(twice.into_iter().chain(problems).collect()));
+    let told = told(twice.into_iter().chain(problems).collect());
+    for what in ["there is a limit `t_RP` already", "unknown requirement `R-5.4-112`", "has no limit `t_RP` in a unit"]
+    {
+        assert!(told.contains(what), "{what}: {told}");
+    }
 }

@@ -27,7 +27,7 @@ const S: u64 = 1_000_000_000;
 #[case("t_i/T_p", (None, None), (None, Some(10_000_000)))]
 #[case("t_dis", (None, Some(3 * MS)), (None, Some(MS)))]
 #[case("t_disM", (None, Some(3 * MS)), (None, Some(3 * MS)))]
-#[case("t_wait", (Some(5 * S), Some(5 * S)), (Some(5 * S), Some(5 * S)))]
+#[case("t_wait", (Some(5 * S), None), (Some(5 * S), None))]
 #[case("t_off", (Some(S), None), (Some(S), None))]
 #[case("t_WURQ", (Some(50_000), Some(700_000)), (Some(50_000), Some(1_100 * MS)))]
 #[case("T_REN", (None, Some(500_000)), (None, Some(500_000)))]
