@@ -166,3 +166,51 @@ fn an_empty_cell_of_the_error_matrix_says_why() {
 fn a_class_that_the_error_matrix_lacks_is_named() {
     assert_snapshot!(matrix("    corruption:", "    corrosion:"));
 }
+
+#[test]
+fn a_limit_says_what_is_wrong_with_it() {
+    let text = "
+- symbol: t_RP
+  about: width of the Ready pulse
+  dut: devise
+  unit: mikro
+  v1.1: {min: 1000, max: 500, clause: \"5.4\"}
+  iec2022: {min: much, base: perhaps}
+  open: L1
+  verify: measured
+- symbol: t_RW
+  about: nothing said
+  dut: device
+  unit: us
+  verify: measured
+";
+    let problems = fsct_harness::limits::parse(&source(text)).expect_err("it is full of mistakes");
+    let told = told(problems);
+    for what in
+        ["devise", "mikro", "exceeds the largest", "`min` has to be a number", "perhaps", "`L1`", "needs the values"]
+    {
+        assert!(told.contains(what), "{what}: {told}");
+    }
+}
+
+#[test]
+fn a_limit_stands_once_and_names_what_there_is() {
+    let limit = "
+- symbol: t_RP
+  about: width of the Ready pulse
+  dut: device
+  unit: V
+  v1.1: {max: 1000, clause: \"5.4\"}
+  verify: measured
+  requirements: R-5.4-112
+";
+    let twice = fsct_harness::limits::parse(&source(&limit.repeat(2))).expect_err("it stands twice");
+    let once = fsct_harness::limits::parse(&source(limit)).expect("it reads");
+    let mut problems = Vec::new();
+    once.check(&Library::embedded().expect("sound").ledger, &mut problems);
+    let told = told(twice.into_iter().chain(problems).collect());
+    for what in ["there is a limit `t_RP` already", "unknown requirement `R-5.4-112`", "has no limit `t_RP` in a unit"]
+    {
+        assert!(told.contains(what), "{what}: {told}");
+    }
+}

@@ -338,10 +338,11 @@ impl Decoder {
 
     /// I/Q has been high since L+ came and is so until now.
     fn iq_high_until(&mut self, at: u64) {
-        if self.iq == Some(true) && self.iq_rise.is_none() {
-            if let Some(until) = self.episode.as_mut().and_then(|episode| episode.iq_before.at_power_on.as_mut()) {
-                *until = at;
-            }
+        if self.iq == Some(true)
+            && self.iq_rise.is_none()
+            && let Some(until) = self.episode.as_mut().and_then(|episode| episode.iq_before.at_power_on.as_mut())
+        {
+            *until = at;
         }
     }
 
@@ -414,10 +415,8 @@ impl Decoder {
                 }
             },
             Phase::Talking(woken) => {
-                if *woken {
-                    if let Some(episode) = &mut self.episode {
-                        episode.communication.get_or_insert(at);
-                    }
+                if *woken && let Some(episode) = &mut self.episode {
+                    episode.communication.get_or_insert(at);
                 }
                 match (rise, self.episode.as_mut().and_then(|episode| episode.ready.as_mut())) {
                     // The wake-up came while the Ready pulse was still running.

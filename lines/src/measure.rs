@@ -149,10 +149,10 @@ pub fn measure(episode: &Episode, uncertainty_ns: u64) -> Vec<Measured> {
     if let (Some(off), Some(next)) = (episode.off, episode.next_on) {
         list.time(Quantity::PowerOff, off, (next, false));
     }
-    if let (Some(fall), Some(first)) = (episode.last_pulse().and_then(|pulse| pulse.fall), episode.wake_ups.first) {
-        if episode.wake_ups.before_ready == 0 {
-            list.time(Quantity::ReadyToWakeUp, fall, (first, false));
-        }
+    if let (Some(fall), Some(first)) = (episode.last_pulse().and_then(|pulse| pulse.fall), episode.wake_ups.first)
+        && episode.wake_ups.before_ready == 0
+    {
+        list.time(Quantity::ReadyToWakeUp, fall, (first, false));
     }
     list.extremes(Quantity::WakeUpRetry, episode.wake_ups.apart);
     list.values

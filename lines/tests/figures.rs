@@ -183,6 +183,29 @@ fn wake_up_before_the_ready_pulse() {
     assert_eq!(Claim::NoEarlyWakeUp.ask(&episode, OSSDE), Answer::Broken(S));
     assert_eq!((episode.wake_ups.count, episode.wake_ups.before_ready), (2, 1));
     assert_eq!(exact(&episode, Quantity::ReadyPulse), [700 * US]);
+    assert_eq!(values(&episode, Quantity::ReadyToWakeUp), [], "the first wake-up has no pulse before it");
+    let unanswered = one("L+ _10ms ~3s\nC/Q _1s ~80us _300ms ~700us _60us ~80us _1s\nI/Q _3s", WakeUps::Pulses);
+    assert_eq!(unanswered.communication, None, "neither Ready pulse nor wake-up is an octet");
+    let octets_only = one(&format!("L+ _10ms ~3s\nC/Q _1s ~80us {octets} _1s\nI/Q _3s"), WakeUps::Pulses);
+    assert_eq!(values(&octets_only, Quantity::TimeToReady), [], "octets may have hidden it");
+}
+
+#[test]
+fn wake_up_while_the_ready_pulse_is_running() {
+    let episode = one("L+ _1ms ~3s\nC/Q _2s ~900us _1s\nI/Q _3s\nwake-up _2.0003s !", WakeUps::Told);
+    assert_eq!(exact(&episode, Quantity::ReadyPulse), [900 * US]);
+    assert_eq!(exact(&episode, Quantity::ReadyToWakeUp), [0]);
+    assert_eq!(Claim::NoEarlyWakeUp.ask(&episode, OSSDE), Answer::Holds);
+}
+
+#[test]
+fn ossd_mode_without_a_ready_pulse() {
+    for (iq, on) in [("_2s", 2 * S), ("_2.001s", 2_001 * MS)] {
+        let episode = one(&format!("L+ _1ms ~3s\nC/Q _2s ~700ms\nI/Q {iq} ~700ms"), WakeUps::Pulses);
+        assert_eq!(values(&episode, Quantity::ReadyPulse), []);
+        assert_eq!(values(&episode, Quantity::TimeToReady), []);
+        assert_eq!(episode.ossd.map(|ossd| ossd.both_on), Some(Some(on)));
+    }
 }
 
 #[test]
@@ -201,6 +224,7 @@ fn retries_are_told_from_octets() {
 #[rstest]
 #[case::start_up("C/Q _2s ~700us _100us ~80us _600us ( ~4us _9us )x20 _300ms", Some(700 * US), 1)]
 #[case::nothing_after("C/Q _2s ~499us _100ms", Some(499 * US), 0)]
+#[case::lone_octet("C/Q _3ms ~104us _500ms", None, 0)]
 #[case::com3("C/Q _1ms ( ~4us _9us ~30us _9us )x500 _1s", None, 0)]
 #[case::com2("C/Q _3ms ( ~260us _52us ~78us _26us _26us ~26us _5ms )x50", None, 0)]
 #[case::com1("C/Q _3ms ( ~625us _208us ~2080us _300us ~208us _20ms )x50", None, 0)]
@@ -214,6 +238,21 @@ fn without_power(#[case] cq: &str, #[case] width: Option<u64>, #[case] wake_ups:
         assert_eq!(values(&episode, Quantity::PowerOff), []);
         assert_eq!(Claim::IqOff.ask(&episode, OSSDE), Answer::Unknown, "not all of the self-test was seen");
     }
+}
+
+#[test]
+fn ossd_mode_soon_after_the_ready_pulse_without_power() {
+    let episode = one("C/Q _2s ~700us _900us ~20ms _500us ~20ms\nI/Q _2.0015s ~40ms", WakeUps::Pulses);
+    assert_eq!(exact(&episode, Quantity::ReadyToOssd), [800 * US, 900 * US]);
+    assert_eq!(exact(&episode, Quantity::TestPulse), [500 * US]);
+    let pin_2 = one("C/Q _2s ~700us _2s\nI/Q _2.0017s ~4ms _1s", WakeUps::Pulses);
+    assert_eq!(pin_2.first_rise, Some(2_001_700 * US));
+}
+
+#[test]
+fn the_ratio_is_that_of_the_worst_pulse() {
+    let episode = ossd("~80ms _1ms ~9ms _100us ~40ms _1s", "~130ms _1s");
+    assert!(exact(&episode, Quantity::TestPulseRatio).contains(&100_000_000), "1 ms of 10 ms");
 }
 
 #[test]
