@@ -1,6 +1,7 @@
 //! How exact the times of a file are.
 
 use super::bad;
+use super::channels::shown;
 use crate::RecordingError;
 use std::fmt;
 use std::num::NonZeroU64;
@@ -38,9 +39,8 @@ impl FromStr for SampleRate {
 
     /// `24 MHz`, `12.5MHz`, `500 kHz`, `24000000`.
     fn from_str(text: &str) -> Result<SampleRate, RecordingError> {
-        let shown = super::channels::shown(text);
-        let refused = || bad(format!("{shown} is no sample rate, such as 24 MHz"));
         let text = text.trim();
+        let refused = || bad(format!("{} is no sample rate, such as 24 MHz", shown(text)));
         let unit = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
         let (number, unit) = text.split_at(unit);
         let unit = unit.trim().to_ascii_lowercase();
