@@ -153,7 +153,7 @@ fn only(line: &str, found: &[usize], there: &[Channel]) -> Result<usize, Recordi
 }
 
 /// The name of a line in texts.
-fn name_of(line: Line) -> &'static str {
+pub(super) fn name_of(line: Line) -> &'static str {
     Line::ALL.into_iter().find(|entry| entry.0 == line).map_or("", |entry| entry.2)
 }
 

@@ -85,7 +85,7 @@ pub(super) fn open_sigrok(stream: Stream, options: &Options) -> Result<(About, R
         return Err(bad("its comments name no channels: export with the header"));
     }
     let rate = Resolution::agreed(rate, options.sample_rate)?;
-    let Some((hertz, _)) = rate else { return Err(bad("its comments state no sample rate: tell it")) };
+    let Some((hertz, _)) = rate else { return Err(bad("its comments state no sample rate: give it, such as 24 MHz")) };
     let columns = cells(&row);
     if columns.len() != channels.len() {
         return Err(lines.bad(&format!(
@@ -152,7 +152,7 @@ impl Reader {
             }
         }
         if columns != self.columns {
-            let what = format!("it has {columns} columns, not {}: it is cut off or none of the table", self.columns);
+            let what = format!("columns: {columns} instead of {}: it is cut off or none of the table", self.columns);
             return Err(self.lines.bad(&what));
         }
         if let Time::Samples { rate, next } = &mut self.time {

@@ -34,7 +34,7 @@ pub(super) fn open<S: Read + Seek + Send + 'static>(
     let metadata = Metadata::read(&mut archive, length)?;
     let rate = Resolution::agreed(metadata.rate, options.sample_rate)?;
     let Some((hertz, _)) = rate else {
-        return Err(bad("its metadata states no sample rate: tell it"));
+        return Err(bad("its metadata state no sample rate: give it, such as 24 MHz"));
     };
     let channels: Vec<Channel> = metadata.probes.iter().map(|(_, name)| Channel::plain(name)).collect();
     let places = options.channels.find(&channels)?;

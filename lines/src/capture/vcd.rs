@@ -1,7 +1,7 @@
 //! Value change dumps.
 
 use super::bounded::Allowance;
-use super::channels::{Channel, shown};
+use super::channels::{Channel, name_of, shown};
 use super::resolution::{self, SECOND};
 use super::{About, Format, LINES, MARK, Options, Resolution, SampleRate, Source, Step, bad};
 use crate::vcd_writer::{UNCERTAINTY, WAKE_UP};
@@ -173,11 +173,9 @@ impl Reader {
                 (None, None) => return Err(bad("it has no time stamp behind its header")),
                 (None, Some(_)) => {
                     let lines = LINES.iter().zip(self.ids).zip(self.levels);
-                    let unknown: Vec<_> = lines
-                        .filter(|((_, id), level)| id.is_some() && level.is_none())
-                        .map(|((line, _), _)| line)
-                        .collect();
-                    return Err(bad(format!("these lines never have a level together with the others: {unknown:?}")));
+                    let unknown = lines.filter(|((_, id), level)| id.is_some() && level.is_none());
+                    let names: Vec<_> = unknown.map(|((line, _), _)| name_of(*line)).collect();
+                    return Err(bad(format!("the lines never have levels all at once: {} has none", names.join(", "))));
                 }
                 _ => {}
             }
@@ -227,7 +225,7 @@ impl Reader {
         let Some(place) = self.ids.iter().position(|known| *known == Some(id)) else { return Ok(None) };
         let level = value.and_then(level_of);
         if level.is_none() {
-            let what = format!("{:?} is neither 0 nor 1 any more at #{}", LINES[place], self.time.unwrap_or(0));
+            let what = format!("{} is neither 0 nor 1 any more at #{}", name_of(LINES[place]), self.time.unwrap_or(0));
             return Err(located(&self.parser, &what));
         }
         self.levels[place] = level;

@@ -69,9 +69,9 @@ fn headers(#[case] text: &str) {
     "Time [s]",
     "no channel is called L+, C/Q or I/Q, so tell which they are, such as C/Q=D1: there is none"
 )]
-#[case::row_cut("Time [s],A,CQ\n0.0,0,1\n0.5,1", "line 3: it has 2 columns, not 3: it is cut off or none of the table")]
+#[case::row_cut("Time [s],A,CQ\n0.0,0,1\n0.5,1", "line 3: columns: 2 instead of 3: it is cut off or none of the table")]
 #[case::cell_cut("Time [s],A,CQ\n0.0,0,1\n0.5,1,", "line 3: `` is neither 0 nor 1")]
-#[case::more_cells("Time [s],CQ\n0.0,0,1\n", "line 2: it has 3 columns, not 2: it is cut off or none of the table")]
+#[case::more_cells("Time [s],CQ\n0.0,0,1\n", "line 2: columns: 3 instead of 2: it is cut off or none of the table")]
 #[case::volts("Time [s],CQ\n0.0,3.301\n", "line 2: `3.301` is neither 0 nor 1")]
 #[case::time_goes_back("Time [s],CQ\n0.5,1\n-0.25,0\n", "line 3: time goes back from 0.5 s to -0.25 s")]
 #[case::no_time("Time [s],CQ\n0.0,1\n1e-3,0\n", "line 3: `1e-3` is no time in seconds, such as 0.000125")]
@@ -113,7 +113,7 @@ fn a_row_is_a_sample(#[case] labels: &str) {
 }
 
 #[rstest]
-#[case::rate_missing("", "0,1\n", "its comments state no sample rate: tell it")]
+#[case::rate_missing("", "0,1\n", "its comments state no sample rate: give it, such as 24 MHz")]
 #[case::rate_0("; Samplerate: 0 Hz", "0,1\n", "a sample rate of 0 gives samples no time")]
 #[case::rate_in_words("; Samplerate: fast", "0,1\n", "`fast` is no sample rate, such as 24 MHz")]
 #[case::times(
@@ -123,7 +123,7 @@ fn a_row_is_a_sample(#[case] labels: &str) {
 )]
 #[case::no_rows("; Samplerate: 1 MHz", "", "it holds comments only: it is cut off")]
 #[case::labels_only("; Samplerate: 1 MHz", "logic,logic\n", "it holds no sample")]
-#[case::cut("; Samplerate: 1 MHz", "0,1\n0", "line 6: it has 1 columns, not 2: it is cut off or none of the table")]
+#[case::cut("; Samplerate: 1 MHz", "0,1\n0", "line 6: columns: 1 instead of 2: it is cut off or none of the table")]
 fn refusals_of_sigrok(#[case] rate: &str, #[case] rows: &str, #[case] expected: &str) {
     assert_eq!(refused(sigrok(rate, rows).as_bytes(), ""), expected);
 }

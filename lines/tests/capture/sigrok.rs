@@ -70,7 +70,7 @@ fn a_sample_may_lie_in_two_chunks() {
 #[test]
 fn a_rate_that_is_missing_can_be_told() {
     let file = session(&metadata("", "unitsize=1"), &[("logic-1-1", &[0, 2])]);
-    assert_eq!(refused(&file, ALL), "its metadata states no sample rate: tell it");
+    assert_eq!(refused(&file, ALL), "its metadata state no sample rate: give it, such as 24 MHz");
     assert_eq!(told(&mut opened(&file, ALL, "1 kHz").unwrap()), "c1@1000000");
 }
 

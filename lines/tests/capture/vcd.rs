@@ -141,10 +141,10 @@ fn of_many_channels_an_error_lists_some() {
 
 #[rstest]
 #[case::time_goes_back("#0 1! 0\" 0#\n#5 1\"\n#4 0\"\n", "line 15: time goes back from #5 to #4")]
-#[case::unknown_later("#0 1! 0\" 0#\n#5 x\"\n", "line 14: Cq is neither 0 nor 1 any more at #5")]
-#[case::a_vector_later("#0 1! 0\" 0#\n#5 b01 \"\n", "line 14: Cq is neither 0 nor 1 any more at #5")]
+#[case::unknown_later("#0 1! 0\" 0#\n#5 x\"\n", "line 14: C/Q is neither 0 nor 1 any more at #5")]
+#[case::a_vector_later("#0 1! 0\" 0#\n#5 b01 \"\n", "line 14: C/Q is neither 0 nor 1 any more at #5")]
 #[case::no_time("", "it has no time stamp behind its header")]
-#[case::no_level("#0 1! 0\"\n", "these lines never have a level together with the others: [Iq]")]
+#[case::no_level("#0 1! 0\"\n", "the lines never have levels all at once: I/Q has none")]
 #[case::cut_in_a_time("#0 1! 0\" 0#\n#5", "line 14: the file ends in the middle of a command or a line: it is cut off")]
 #[case::other_text(
     "#0 1! 0\" 0#\nhello\n",
