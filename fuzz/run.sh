@@ -10,7 +10,7 @@ command -v cargo-fuzz >/dev/null || cargo install --locked --version 0.13.2 carg
 export RUSTC_BOOTSTRAP=1
 # cargo fuzz knows no --locked.
 cargo metadata --locked --format-version 1 --manifest-path fuzz/Cargo.toml >/dev/null
-for target in frame_decoder session; do
+for target in frame_decoder session capture; do
     mkdir -p "fuzz/found/$target"
     cargo fuzz run -s none "$target" "fuzz/found/$target" "fuzz/corpus/$target" -- \
         -max_total_time="$seconds" -len_control=0 -max_len=1024 -timeout=10 -rss_limit_mb=1024 -print_final_stats=1

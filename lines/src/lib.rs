@@ -5,18 +5,23 @@
 //! power-on; [`measure`] takes the times out of an episode, a [`Claim`] what is no time; [`judge`] holds a value against
 //! the [`Limits`] of an edition.
 
+pub mod capture;
 mod chart;
 mod edge;
 mod episode;
+mod filter;
 mod judge;
 mod limit;
 mod measure;
 mod ossd;
+mod vcd_writer;
 
 pub use chart::{Chart, ChartError};
 pub use edge::{Edge, Levels, Recording, RecordingError};
 pub use episode::{Decoder, Episode, IqBefore, POWER_ON, Pulse, WAKE_UP, WakeUps, WakeUpsSeen, decode};
+pub use filter::Filter;
 pub use judge::{Bounds, Judged, Verdict, judge, judge_looks};
 pub use limit::{Limit, Limits, Outside, Row, Subject, Unit, Verify};
 pub use measure::{Answer, Claim, Given, Measured, Quantity, measure};
 pub use ossd::{ALONE_AFTER, Discrepancy, Extremes, OFF_AFTER, Ossd, Ratio, Seen, TestPulses};
+pub use vcd_writer::VcdWriter;
