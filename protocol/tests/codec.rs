@@ -175,6 +175,8 @@ fn names_read_back() {
         assert_eq!(ProtMode::from_code(mode.code()), Some(mode));
     }
     assert_eq!((Edition::V1_1.to_string(), ProtMode::Crc32.to_string()), ("v1.1".into(), "crc32".into()));
+    let unknown = "crc8".parse::<ProtMode>().map_err(|unknown| unknown.to_string());
+    assert_eq!(unknown, Err("unknown name".into()));
     assert!("v1.2".parse::<Edition>().is_err() && ProtMode::from_code(0xF9).is_none());
 }
 
@@ -214,6 +216,8 @@ fn an_spdu_of_all_zero_is_one_in_every_octet() {
 fn fields_of_a_view() {
     let view = View::new(&[0x5A, 0xFE, 0xA2, 0x12, 0x34], ProtMode::Crc16, 1).expect("five octets");
     assert_eq!((view.counter(), view.signature()), (5, 0x1234));
+    let wire = Wire { pd: Pd::safe(0), port_num: 0xFE, octet: 0xA2, signature: Some(0x1234) };
+    assert_eq!(format!("{:?}", wire.emit(ProtMode::Crc16, Reading::Preset)), "FEA21234");
     let short = View::new(&[1; 5], ProtMode::Crc16, 2).expect_err("one too few");
     assert_eq!(short.to_string(), "an SPDU of 6 octets was expected, 5 are there");
 }

@@ -232,7 +232,8 @@ impl DeviceOracle {
         let path = config.machine.expire();
         config.timer = Some(self.setup.watchdog_again(window, self.set.last_at, at));
         let mut free = Free::default();
-        if had_comm_err && path.iter().any(|t| t == T(30)) {
+        // In state 24 it never stands: this is T30.
+        if had_comm_err {
             free.d_comm_err = 33;
         }
         config.took(path);
