@@ -265,8 +265,8 @@ fn spdus_of_an_fs_master_that_no_observer_can_tell_apart() {
 }
 
 fn master_spdu() -> Spdu {
-    let mut port = super::master::Port::operating(strict(Role::Master));
-    port.says(super::master::answer(3, 0), super::master::live(5));
+    let mut port = master::Port::operating(strict(Role::Master));
+    port.says(master::answer(3, 0), master::live(5));
     *port.oracle.set().best().expect("one is followed").newest()
 }
 
