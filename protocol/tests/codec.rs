@@ -1,7 +1,7 @@
 //! The octet codecs: tables, round trips, an independent signature, and every small corruption.
 
 use fsct_protocol::crc::{Reading, crc16, crc32, signature};
-use fsct_protocol::fsp::{Authenticity, Protocol, RecordError, VerifyRecord};
+use fsct_protocol::fsp::{Authenticity, IoStructure, IoTotals, Protocol, RecordError, VerifyRecord, param_desc_crc};
 use fsct_protocol::spdu::{Control, OutSpdu, Pd, Port, Status, View, Wire, inv3, succ};
 use fsct_protocol::{Edition, ProtMode};
 use proptest::prelude::*;
@@ -174,5 +174,85 @@ fn names_read_back() {
         assert_eq!(mode.name().parse(), Ok(mode));
         assert_eq!(ProtMode::from_code(mode.code()), Some(mode));
     }
+    assert_eq!((Edition::V1_1.to_string(), ProtMode::Crc32.to_string()), ("v1.1".into(), "crc32".into()));
+    let unknown = "crc8".parse::<ProtMode>().map_err(|unknown| unknown.to_string());
+    assert_eq!(unknown, Err("unknown name".into()));
     assert!("v1.2".parse::<Edition>().is_err() && ProtMode::from_code(0xF9).is_none());
+}
+
+#[test]
+fn so_much_process_data_fits() {
+    assert_eq!((ProtMode::Crc16.max_pd(), ProtMode::Crc32.max_pd()), (3, 25));
+    assert_eq!((Pd::safe(25).octets().len(), Pd::safe(26).octets().len()), (25, 25));
+    assert!(Pd::new(&[1; 25]).is_some() && Pd::new(&[1; 26]).is_none());
+}
+
+#[test]
+fn safe_data_are_all_0() {
+    let pd = |octets: &[u8]| Pd::new(octets).expect("it fits");
+    assert!(Pd::safe(2).is_safe() && pd(&[0, 0]).is_safe() && pd(&[]).is_safe());
+    assert!(!pd(&[0, 1]).is_safe());
+    assert_eq!(format!("{:?}", pd(&[0x0A, 0xB0])), "0AB0");
+}
+
+#[test]
+fn the_fs_device_sends_the_port_number_inverted() {
+    let port = Port::new(5).expect("not 0");
+    assert_eq!((port.number(), port.inverted(), Port::new(0)), (5, 0xFA, None));
+}
+
+#[test]
+fn an_spdu_of_all_zero_is_one_in_every_octet() {
+    let zero = [0; 6];
+    assert!(View::new(&zero, ProtMode::Crc16, 2).expect("six octets").is_all_zero());
+    for at in 0..6 {
+        let mut octets = zero;
+        octets[at] = 1;
+        assert!(!View::new(&octets, ProtMode::Crc16, 2).expect("six octets").is_all_zero(), "octet {at}");
+    }
+}
+
+#[test]
+fn fields_of_a_view() {
+    let view = View::new(&[0x5A, 0xFE, 0xA2, 0x12, 0x34], ProtMode::Crc16, 1).expect("five octets");
+    assert_eq!((view.counter(), view.signature()), (5, 0x1234));
+    let wire = Wire { pd: Pd::safe(0), port_num: 0xFE, octet: 0xA2, signature: Some(0x1234) };
+    assert_eq!(format!("{:?}", wire.emit(ProtMode::Crc16, Reading::Preset)), "FEA21234");
+    let short = View::new(&[1; 5], ProtMode::Crc16, 2).expect_err("one too few");
+    assert_eq!(short.to_string(), "an SPDU of 6 octets was expected, 5 are there");
+}
+
+/// Figure A.1 and the sample IODD of E.5.8.
+#[rstest]
+#[case((10, 13, 2, 1), 6, 0x9A28)]
+#[case((8, 13, 2, 1), 4, 0x13FB)]
+fn signatures_of_known_io_structures(
+    #[case] (range, bits, octets, int16): (u8, u8, u8, u8),
+    #[case] output: u8,
+    #[case] crc: u16,
+) {
+    let input = IoTotals { range, bits, octets, int16, int32: 0 };
+    let output = IoTotals { range: output, ..IoTotals::default() };
+    assert_eq!(IoStructure { version: 1, input, output }.signature(), crc);
+}
+
+#[test]
+fn a_parameter_description_has_the_signature_of_its_edition() {
+    let text = b"FST_";
+    assert_eq!(u64::from(param_desc_crc(Edition::V1_1, text)), bitwise(16, 0x1_4EAB, 0, text));
+    assert_eq!(u64::from(param_desc_crc(Edition::Iec2022, text)), bitwise(32, 0x1_F4AC_FB13, 0, text));
+}
+
+#[test]
+fn a_wrong_record_says_what_is_wrong() {
+    let length = VerifyRecord::from_octets(&[0; 4]).expect_err("too short").to_string();
+    assert!(length.ends_with("4 are there"), "{length}");
+    let mut octets = VerifyRecord {
+        authenticity: Authenticity { authenticity_1: 0, authenticity_2: 0, port: 0 },
+        protocol: Protocol { version: 1, mode: 2, watchdog_ms: 100, io_struct_crc: 0x9A28, tech_par_crc: 0 },
+    }
+    .to_octets();
+    octets[0] = 1;
+    let signature = VerifyRecord::from_octets(&octets).expect_err("falsified").to_string();
+    assert!(signature.ends_with("0000 was sent"), "{signature}");
 }

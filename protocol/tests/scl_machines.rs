@@ -2,7 +2,7 @@
 
 use fsct_protocol::scl::device::{Readings, Received};
 use fsct_protocol::scl::master::Answer;
-use fsct_protocol::scl::{Device, Master, Row, Var, device, master};
+use fsct_protocol::scl::{Device, Master, Path, Row, State, T, Var, device, master};
 use fsct_protocol::spdu::{Control, Status};
 use proptest::prelude::*;
 use rstest::rstest;
@@ -153,4 +153,149 @@ fn answers_of_an_fs_device(#[case] before: &[u8], #[case] spdus: &[(u8, bool)], 
         );
         assert_eq!((status.dcount_i, found), (7 - mcount, *expected), "after MCount {mcount}");
     }
+}
+
+fn control(mcount: u8) -> Control {
+    Control { mcount, set_sd: false, ch_f_ack_req: false }
+}
+
+fn good(mcount: u8) -> Received {
+    Received { control: control(mcount), intact: true }
+}
+
+fn answer(dcount_i: u8) -> Answer {
+    let status = Status { dcount_i, sd_set: false, d_comm_err: false, d_timeout: false };
+    Answer { status, intact: true }
+}
+
+fn numbers(path: Path) -> Vec<u8> {
+    path.iter().map(|t| t.0).collect()
+}
+
+#[test]
+fn a_repetition_is_old_and_any_other_counter_is_not() {
+    let mut scl = Device::regular(3);
+    assert_eq!(scl.previous(), Some(3));
+    assert!(scl.is_old(3) && !scl.is_old(4) && !scl.is_old(0));
+    assert!(scl.receive(good(3)).is_empty());
+    assert_eq!((numbers(scl.receive(good(4))), scl.previous()), (vec![24, 22, 23], Some(4)));
+    let mut first = Device::new(Readings::default());
+    first.start();
+    assert_eq!((first.is_old(0), first.previous()), (false, None));
+}
+
+#[test]
+fn counter_check_of_table_40() {
+    let scl = Device::regular(7);
+    let taken: Vec<u8> = (0..8).filter(|mcount| scl.counter_check(*mcount)).collect();
+    assert_eq!(taken, [0, 1]);
+    assert_eq!(numbers(Device::regular(3).receive(good(5))), [24, 25, 26], "a jump is a CommErr");
+}
+
+#[test]
+fn a09_leaves_jumps_alone_and_nothing_else() {
+    let ignoring = || {
+        let mut scl = Device::regular(3);
+        scl.set_readings(Readings { jump_ignored: true, ..Readings::default() });
+        scl
+    };
+    assert!(ignoring().receive(good(5)).is_empty());
+    assert_eq!(numbers(ignoring().receive(good(4))), [24, 22, 23]);
+    assert_eq!(numbers(ignoring().receive(good(0))), [24, 22, 23]);
+    let hit = Received { intact: false, ..good(5) };
+    assert_eq!(numbers(ignoring().receive(hit)), [24, 25, 26], "one that is hit is no jump");
+    let mut first = Device::new(Readings { jump_ignored: true, ..Readings::default() });
+    first.start();
+    assert_eq!(numbers(first.receive(good(5))), [21, 25, 26], "the first SPDU is no jump");
+}
+
+#[test]
+fn a19_is_taken_up_by_the_rows() {
+    let mut scl = Device::regular(3);
+    scl.set_readings(Readings { sequential: true, ..Readings::default() });
+    assert_eq!((scl.get(Var::Sequential), scl.readings().sequential), (1, true));
+}
+
+#[test]
+fn sdset_ds_shows_in_the_next_answer() {
+    let mut scl = Device::regular(3);
+    scl.set_sdset_ds(true);
+    scl.receive(good(4));
+    assert!(scl.status().sd_set && scl.uses_pdout());
+}
+
+#[test]
+fn d_timer_runs_from_the_first_answer_on() {
+    let mut scl = Device::new(Readings::default());
+    assert!(!scl.timer_runs());
+    scl.start();
+    assert!(!scl.timer_runs());
+    scl.receive(good(0));
+    assert!(scl.timer_runs() && scl.timer_restarted());
+    scl.receive(Received { intact: false, ..good(1) });
+    assert!(scl.timer_runs() && scl.state() == State(26));
+    let mut waiting = Device::new(Readings::default());
+    waiting.start();
+    assert!(!waiting.timer_restarted() && waiting.expire().is_empty());
+}
+
+#[test]
+fn an_fs_device_in_regular_operation() {
+    for (mcount, next) in [(3, 4), (7, 1), (3 + 8, 4)] {
+        let mut scl = Device::regular(mcount);
+        assert_eq!(scl.status(), answer(7 - (mcount & 7)).status);
+        assert_eq!((scl.previous(), scl.get(Var::SetSdDc)), (Some(mcount & 7), 0));
+        assert_eq!(numbers(scl.receive(good(next))), [24, 22, 23]);
+        assert!(scl.uses_pdout() && !scl.status().sd_set);
+    }
+}
+
+#[test]
+fn an_fs_master_in_regular_operation() {
+    for mcount in [1, 2, 7, 2 + 8] {
+        let mut scl = Master::regular(mcount);
+        let (own, before) = (mcount & 7, if mcount & 7 == 1 { 7 } else { (mcount & 7) - 1 });
+        assert_eq!(
+            (scl.state(), scl.control(), scl.uses_pdout(), scl.timer_runs()),
+            (State(5), control(own), true, true)
+        );
+        assert!(!scl.takes(7 - before), "the answer before is old");
+        assert_eq!(numbers(scl.receive(answer(7 - own))), [6, 4, 5]);
+        assert_eq!((scl.get(Var::In), scl.uses_pdout(), scl.timer_restarted()), (1, true, true));
+    }
+}
+
+#[test]
+fn an_fs_master_behind_a_fault() {
+    for mcount in [0, 4, 7, 4 + 8] {
+        let scl = Master::after_fault(mcount);
+        let expected = Control { mcount: mcount & 7, set_sd: true, ch_f_ack_req: false };
+        assert_eq!((scl.state(), scl.control(), scl.get(Var::SdsetS)), (State(7), expected, 1));
+        assert!(!scl.uses_pdout() && scl.timer_runs());
+        let taken: Vec<u8> = (0..8).filter(|dcount_i| scl.takes(*dcount_i)).collect();
+        assert_eq!(taken, [7 - (mcount & 7)], "the mirrored one alone (T10)");
+    }
+}
+
+#[test]
+fn m_timer_does_not_run_before_the_first_answer() {
+    let mut scl = Master::new();
+    assert!(!scl.timer_runs() && !scl.takes(7) && scl.receive(answer(7)).is_empty());
+    scl.start();
+    assert!(!scl.timer_runs() && !scl.timer_restarted() && scl.takes(3));
+}
+
+#[test]
+fn set_sd_c_gives_sd_without_a_fault() {
+    let mut scl = Master::regular(3);
+    scl.set_set_sd_c(true);
+    assert_eq!(numbers(scl.receive(answer(4))), [6, 4, 5]);
+    assert!(scl.control().set_sd && !scl.uses_pdout() && scl.get(Var::In) == 0);
+}
+
+#[test]
+fn the_row_that_decides_an_answer_is_not_the_one_that_sends_it() {
+    assert_eq!(Device::regular(3).receive(good(4)).deciding(), Some(T(22)));
+    assert_eq!(Master::regular(3).receive(answer(4)).deciding(), Some(T(4)));
+    assert_eq!((Path::default().deciding(), State(24).to_string()), (None, "24".into()));
 }

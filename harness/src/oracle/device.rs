@@ -12,7 +12,7 @@ use fsct_protocol::scl::device::{Readings, Received};
 use fsct_protocol::scl::{Device, Path, State, T, Var};
 use fsct_protocol::spdu::{Pd, Status, View};
 
-/// Bits of the status octet that a tolerance leaves free, with the tolerance.
+/// Bits of the status octet that a tolerance in force leaves free, with the tolerance; 0: judged.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub struct Free {
     /// SDset.
@@ -254,7 +254,8 @@ impl DeviceOracle {
         let path = config.machine.expire();
         config.expired(state, self.setup.watchdog_again(window, self.set.last_at, at));
         let mut free = Free::default();
-        if had_comm_err && path.iter().any(|t| t == T(30)) {
+        // In state 24 it never stands: this is T30.
+        if had_comm_err {
             free.d_comm_err = 33;
         }
         config.took(path);
@@ -398,10 +399,15 @@ impl DeviceOracle {
         let pdout = if config.machine.uses_pdout() { config.received } else { Pd::safe(self.setup.pd_out) };
         let leaves_fault = path.iter().any(|t| t == T(28));
         let newest = self.pdin.len().saturating_sub(1) as u32;
+        let in_force = |number: u8| if self.allows(number) { number } else { 0 };
         let snapshot = Answer {
             made: self.set.exchange,
             status: Some(config.machine.status()),
-            free,
+            free: Free {
+                sd_set: in_force(free.sd_set),
+                d_comm_err: in_force(free.d_comm_err),
+                d_timeout: in_force(free.d_timeout),
+            },
             pdin: (config.newest().pdin.1, newest),
             pdout,
             set_sd_dc: (!leaves_fault).then_some(config.machine.get(Var::SetSdDc) == 1),
@@ -449,7 +455,7 @@ impl DeviceOracle {
             (expected.d_timeout, seen.d_timeout, snapshot.free.d_timeout),
         ] {
             if expected != seen {
-                if free == 0 || !self.allows(free) {
+                if free == 0 {
                     return None;
                 }
                 used = used.with(free);

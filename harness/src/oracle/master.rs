@@ -18,18 +18,19 @@ const SD_CYCLES: u8 = 3;
 /// An SPDU of the FS-Master, and what its gateway services show with it.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Spdu {
-    made: u64,
+    /// Exchange in which it was made.
+    pub made: u64,
     /// `None` before the first SPDU: the image is all zero, or there is none.
     pub control: Option<Control>,
     /// Generations of PDout_M of which the SPDU may carry one; `None`: SDout.
     pub pdout: Option<(u32, u32)>,
-    /// Tolerance by which SDout may be sent in place of PDout; 0: none.
+    /// Tolerance in force by which SDout may be sent in place of PDout; 0: none.
     pub sdout: u8,
     /// PDin_M expected.
     pub pdin: Pd,
     /// SDset_S expected; the qualifier is GOOD when it is 0.
     pub sdset_s: bool,
-    /// Tolerance by which PDin_M and SDset_S may still be those of the safe state; 0: none.
+    /// Tolerance in force by which PDin_M and SDset_S may still be those of the safe state; 0: none.
     pub late: u8,
     /// ChFAckReq_S expected.
     pub ch_f_ack_req_s: bool,
@@ -395,14 +396,15 @@ impl MasterOracle {
         let newest = self.pdout.len().saturating_sub(1) as u32;
         let earlier = config.newest().pdout.map_or(newest.saturating_sub(1), |range| range.1);
         let recovered = path.iter().any(|t| t == T(11));
+        let in_force = |number: u8| if self.allows(number) { number } else { 0 };
         let snapshot = Spdu {
             made: self.set.exchange,
             control: Some(master.control()),
             pdout: is(Var::Out).then_some((earlier.min(newest), newest)),
-            sdout: if is(Var::Out) && sd_set { 22 } else { 0 },
+            sdout: if is(Var::Out) && sd_set { in_force(22) } else { 0 },
             pdin: if is(Var::In) { config.received } else { Pd::safe(self.setup.pd_in) },
             sdset_s: is(Var::SdsetS),
-            late: if recovered && is(Var::In) { 14 } else { 0 },
+            late: if recovered && is(Var::In) { in_force(14) } else { 0 },
             ch_f_ack_req_s: is(Var::ChFAckReqS),
             path,
         };
@@ -449,7 +451,7 @@ impl MasterOracle {
                 if given.iter().any(|pd| pd.octets() == view.pd()) {
                     return Some(Mask::NONE);
                 }
-                (zero && snapshot.sdout != 0 && self.allows(snapshot.sdout)).then(|| Mask::NONE.with(snapshot.sdout))
+                (zero && snapshot.sdout != 0).then(|| Mask::NONE.with(snapshot.sdout))
             }
         }
     }
@@ -470,7 +472,7 @@ impl MasterOracle {
             return Some(Mask::NONE);
         }
         let late = safe && agrees(true, app.sdset_s) && agrees(false, app.qualifier);
-        (late && snapshot.late != 0 && self.allows(snapshot.late)).then(|| Mask::NONE.with(snapshot.late))
+        (late && snapshot.late != 0).then(|| Mask::NONE.with(snapshot.late))
     }
 
     /// PDout values an SPDU may carry, as text, the likeliest first; empty when it is not judged.

@@ -13,6 +13,8 @@ mod master;
 mod ossde;
 mod set;
 mod setup;
+#[cfg(test)]
+mod tests;
 mod tolerance;
 
 pub use device::DeviceOracle;

@@ -138,7 +138,7 @@ impl OssdeOracle {
             self.take(2, 3);
         }
         match (self.state, now.good, now.request) {
-            (1, true, false) if !still => self.take(1, 2),
+            (1, true, false) => self.take(1, 2),
             (2, false, false) => {
                 if antivalence <= NO_FAULT_NS {
                     let expected = "GOOD: no fault of the lines";

@@ -253,11 +253,6 @@ impl Device {
         self.vars.set(Var::SdsetDs, value.into());
     }
 
-    /// Gives one variable another value: for readings that concern one answer only (A33).
-    pub fn override_var(&mut self, var: Var, value: u8) {
-        self.vars.set(var, value);
-    }
-
     /// Changes the readings followed from here on.
     pub fn set_readings(&mut self, readings: Readings) {
         self.readings = readings;
