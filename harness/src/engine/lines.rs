@@ -3,7 +3,7 @@
 use super::{Engine, Stop};
 use crate::case::model::{After, Wake, Wanted};
 use fsct_adapters::{Line, Mode, Role, Stimulus};
-use fsct_lines::{Answer, Claim, Given, Judged, Outside, Quantity, judge_looks};
+use fsct_lines::{Answer, Claim, Given, Judged, Measured, Outside, Quantity, judge_looks};
 use fsct_reports::measurement::{Counted, Measurement};
 use fsct_reports::record::{Check, Verdict};
 
@@ -74,7 +74,7 @@ impl Engine<'_, '_> {
 
     fn quantity(&mut self, quantity: Quantity) {
         let (now, uncertainty_ns) = (self.session.now, self.session.description.clock.uncertainty_ns);
-        let values = match quantity {
+        let values: Vec<Measured> = match quantity {
             Quantity::DeviceWatchdog | Quantity::MasterWatchdog => {
                 let stopwatch = self.session.link().stopwatch.as_ref();
                 stopwatch.and_then(|watch| watch.measured(quantity, uncertainty_ns)).into_iter().collect()
@@ -94,6 +94,11 @@ impl Engine<'_, '_> {
         let bounds = limit.bounds(edition, |name| profile.declared(name)).unwrap_or_default();
         let outside = limit.outside(edition);
         let what = format!("{symbol}: {}", limit.about);
+        // A time that is still running says nothing unless it is too long already.
+        let known = values.iter().any(|value| value.high != u64::MAX);
+        let too_long = |value: &Measured| value.judge(bounds).verdict == fsct_lines::Verdict::Fail;
+        let values: Vec<Measured> =
+            values.into_iter().filter(|value| !known || value.high != u64::MAX || too_long(value)).collect();
         if values.is_empty() {
             return self.reason(
                 Verdict::Inconclusive,
