@@ -274,8 +274,10 @@ impl<'s, 'd> Engine<'s, 'd> {
             Action::Smi(smi) => self.smi(smi)?,
             Action::Drive(levels) => self.drive(levels)?,
             Action::Pass { time, after } => {
-                if let Some(after) = after {
-                    self.await_lines(*after)?;
+                if let Some(after) = after
+                    && self.await_lines(*after)?.is_none()
+                {
+                    self.overdue(*after);
                 }
                 let ns = self.nanoseconds(*time).unsigned_abs();
                 self.session.pass(ns)?;

@@ -117,13 +117,16 @@ pub fn matrix(library: &Library, role: Role, done: &(dyn Fn() + Sync)) -> Result
     Ok(Matrix { role: role.to_string(), mutants, cases })
 }
 
+/// What begins the kinds of reasons that are the expectations of a case.
+const OWN: [&str; 4] = ["expect/", "measure/", "lines/", "liveness"];
+
 /// A case that failed kills when an expectation in one of its own steps did, which a partner that has to come to operation is
 /// one of; where things start and whether they go on afterwards is no business of a single case.
 fn kill(row: &mut Row, case: &CaseRecord) {
     // Step 0 is the start condition; the liveness check has a step of its own only where the case came that far.
     let own = |reason: &&Reason| {
         let step = case.steps.get(reason.step).filter(|step| !step.text.starts_with("liveness:"));
-        let expected = reason.kind.starts_with("expect/") || reason.kind == "liveness";
+        let expected = OWN.iter().any(|kind| reason.kind.starts_with(kind));
         reason.verdict == Verdict::Fail && expected && reason.step > 0 && step.is_some()
     };
     let Some(reason) = case.reasons.iter().find(own) else { return };

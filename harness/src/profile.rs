@@ -61,6 +61,8 @@ pub struct Profile {
     pub time_to_ready_ms: u64,
     /// FSP_MinShutDownTime in milliseconds.
     pub min_shut_down_ms: u64,
+    /// How long after its Ready pulse an FS-Device begins OSSDe operation, by its data sheet, in milliseconds.
+    pub ossde_within_ms: u64,
     /// How late an FS-Master may end its waiting for a Ready pulse, in milliseconds (L03).
     pub ready_margin_ms: u64,
     /// How long the SCL may take to start after FSP parameterization, in milliseconds.
@@ -119,6 +121,7 @@ impl Profile {
         let device_id = number("DeviceID", 1..=0xFF_FFFF, 0x00_1234) as u32;
         let time_to_ready_ms = number("FSP_TimeToReady_ms", 10..=327_670, 5_000);
         let min_shut_down_ms = number("FSP_MinShutDownTime_ms", 1_000..=10_000, 1_000);
+        let ossde_within_ms = number("OSSDe_within_ms", 1..=600_000, 10_000);
         let ready_margin_ms = number("ready_margin_ms", 0..=60_000, 100);
         let watchdog_margin = number("watchdog_margin", 0..=1_000, 2);
         let timer_tick_us = number("timer_tick_us", 0..=1_000_000, 0);
@@ -169,6 +172,7 @@ impl Profile {
                 device_id,
                 time_to_ready_ms,
                 min_shut_down_ms,
+                ossde_within_ms,
                 ready_margin_ms,
                 watchdog_margin,
                 timer_tick_us,

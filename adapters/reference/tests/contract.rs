@@ -4,7 +4,7 @@
 mod common;
 
 use common::*;
-use fsct_adapters::{ClockKind, Dut, Octets, Pco, Role, Seen, Service, Stimulus};
+use fsct_adapters::{ClockKind, Dut, Line, Octets, Pco, Role, Seen, Service, Stimulus};
 use fsct_protocol::{Edition, ProtMode};
 use fsct_reference::{ConstantDevice, EchoDevice, FsDevice, Mutant, NullDevice, OptionError, Options};
 use rstest::rstest;
@@ -23,7 +23,7 @@ fn they_all_describe_themselves_alike() {
     for mut device in devices() {
         let description = device.hello().unwrap();
         assert_eq!((description.role, description.ports), (Role::Device, 1));
-        assert_eq!(description.pcos, [Pco::Power, Pco::Link, Pco::Acyclic, Pco::App, Pco::Clock]);
+        assert_eq!(description.pcos, [Pco::Power, Pco::Link, Pco::Acyclic, Pco::App, Pco::Line, Pco::Clock]);
         assert_eq!(description.clock.kind, ClockKind::Virtual);
         for edition in Edition::ALL {
             for mode in ProtMode::ALL {
@@ -80,6 +80,7 @@ fn power_on_reports_every_output_once() {
     bench.power(true);
     let service = |service, value: &[u8]| Seen::Service { port: 1, service, value: Octets::new(value).unwrap() };
     let expected = [
+        Seen::Line { port: 1, line: Line::Power, level: true },
         service(Service::PdoutD, &[0; 3]),
         service(Service::SetsdDc, &[0]),
         service(Service::ChfackreqDc, &[0]),
@@ -158,8 +159,9 @@ fn query(pairs: &[(&str, &str)]) -> Result<Options, OptionError> {
 #[test]
 fn options_of_the_address() {
     assert_eq!(query(&[]), Ok(Options::default()));
-    let all = Options { mutant: Some(Mutant::WrongSeed), latency: 8, clock: ClockKind::Real };
-    assert_eq!(query(&[("clock", "real"), ("mutant", "wrong-seed"), ("latency", "8")]), Ok(all));
+    let all = Options { mutant: Some(Mutant::WrongSeed), latency: 8, clock: ClockKind::Real, pulse_us: 500 };
+    let pairs = [("clock", "real"), ("mutant", "wrong-seed"), ("pulse_us", "500"), ("latency", "8")];
+    assert_eq!(query(&pairs), Ok(all));
     for mutant in Mutant::ALL.iter().copied() {
         assert_eq!(query(&[("mutant", mutant.name())]), Ok(Bench::mutant(mutant)));
     }
@@ -171,6 +173,7 @@ fn options_of_the_address() {
 #[case(&[("clock", "reel")], r#"the reference DUT has no clock "reel", did you mean "real"?"#)]
 #[case(&[("latency", "9")], r#"the latency of the reference DUT is a number of exchanges from 0 to 8, not "9""#)]
 #[case(&[("latency", "-1\n")], r#"the latency of the reference DUT is a number of exchanges from 0 to 8, not "-1\n""#)]
+#[case(&[("pulse_us", "0")], r#"the Ready pulse of the reference device is 1 to 10000 microseconds wide, not "0""#)]
 #[case(&[("latency", "1"), ("latency", "1")], r#"the option "latency" of the reference DUT is given twice"#)]
 fn options_that_cannot_be_understood(#[case] pairs: &[(&str, &str)], #[case] text: &str) {
     assert_eq!(query(pairs).unwrap_err().to_string(), text);

@@ -277,6 +277,23 @@ fn starts(variant: Variant, options: MasterOptions) -> Vec<(u64, Seen)> {
     all
 }
 
+/// A Ready pulse and nobody who answers the wake-up, and a port without safety that gets no pulse.
+fn unanswered(variant: Variant, options: MasterOptions) -> Vec<(u64, Seen)> {
+    let mut tour = Tour::new(Bench::factory_with(variant, options));
+    tour.bench.plug(None);
+    tour.smi(SmiService::PortConfiguration, PORT, 0xFFF0, &list(variant).octets());
+    tour.drive(true, false, 750 * US);
+    tour.drive(false, false, 400 * MS);
+    let mut all = tour.all;
+    let mut wanted = list(variant);
+    (wanted.port_mode, wanted.validation) = (2, 0);
+    let mut tour = Tour::new(Bench::factory_with(variant, options));
+    tour.smi(SmiService::PortConfiguration, PORT, 0xFFF0, &wanted.octets());
+    tour.drive(false, false, 100 * MS);
+    all.extend(tour.all);
+    all
+}
+
 /// Two octets of data without safety relevance.
 fn mixed(variant: Variant, options: MasterOptions) -> Vec<(u64, Seen)> {
     let mut tour = Tour::new(Bench::factory_with(variant, options));
@@ -362,7 +379,8 @@ fn a_list_has_the_length_of_its_edition() {
 #[test]
 fn each_mutant_shows() {
     type Look = fn(Variant, MasterOptions) -> Vec<(u64, Seen)>;
-    let looks: [Look; 9] = [regular, errors, timeout_behind_1, signatures, ports, sizes, starts, mixed, ossde];
+    let looks: [Look; 10] =
+        [regular, errors, timeout_behind_1, signatures, ports, sizes, starts, mixed, ossde, unanswered];
     let variants = |look: usize| {
         let pd = |mode: ProtMode| if look == 3 { mode.max_pd() as u8 } else { 3 };
         let of = move |edition, mode: ProtMode| variant(edition, mode, pd(mode));

@@ -3,9 +3,9 @@
 
 mod master_common;
 
-use fsct_adapters::{Line, Mode, Octets, Response, Seen, Service, SmiService, Stimulus};
+use fsct_adapters::{Dut, Line, Mode, Observation, Octets, Response, Seen, Service, SmiService, Stimulus};
 use fsct_protocol::{Edition, ProtMode};
-use fsct_reference::MasterOptions;
+use fsct_reference::{FsMaster, MasterOptions};
 use master_common::*;
 use rstest::rstest;
 
@@ -424,4 +424,14 @@ fn only_the_data_lines_can_be_driven(#[values(Line::Power, Line::WakeUp)] line: 
     let mut bench = Bench::waiting_first(plain());
     bench.drive(line, true);
     assert_eq!(bench.seen(), [Seen::Unsupported]);
+}
+
+#[test]
+fn what_is_driven_comes_back_with_its_time() {
+    let mut master = FsMaster::new(MasterOptions::default());
+    let mut seen = Vec::new();
+    let drive = Stimulus::Drive { port: 1, line: Line::Cq, level: true };
+    master.apply(&[Stimulus::Power(true), Stimulus::Advance { ns: 7 * US }, drive], &mut seen).unwrap();
+    let back = Observation { stimulus: 2, at: 7 * US, seen: Seen::Line { port: 1, line: Line::Cq, level: true } };
+    assert_eq!(seen.last(), Some(&back));
 }

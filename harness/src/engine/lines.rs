@@ -13,8 +13,6 @@ const COARSE_NS: u64 = 400_000;
 const FINE_NS: u64 = 25_000;
 /// A Ready pulse that comes later than this after its time is measured as missing.
 const OVERDUE_NS: u64 = 100_000_000;
-/// How long OSSDe operation is awaited after the latest Ready pulse; the data sheet says how long it may take.
-const OSSDE_NS: u64 = 10_000_000_000;
 /// What a woken FS-Device may take until it answers: three transmission rates are tried.
 const ANSWER_NS: u64 = 50_000_000;
 
@@ -26,7 +24,8 @@ impl Engine<'_, '_> {
             limit.bounds(self.session.setup().edition, |name| self.session.profile.declared(name))?.max
         };
         let ready = bound(Quantity::TimeToReady).unwrap_or(0) + OVERDUE_NS;
-        let deadline = self.session.now + if after == After::Ossde { ready + OSSDE_NS } else { ready };
+        let ossde = self.session.profile.ossde_within_ms * 1_000_000;
+        let deadline = self.session.now + if after == After::Ossde { ready + ossde } else { ready };
         loop {
             let now = self.session.now;
             let lines = &mut self.session.link_mut().lines;
@@ -39,6 +38,16 @@ impl Engine<'_, '_> {
             }
             let fine = after == After::ReadyPulse && lines.cq();
             self.session.pass(if fine { FINE_NS } else { COARSE_NS.min(deadline - now) })?;
+        }
+    }
+
+    /// What was awaited did not come. A missing Ready pulse shows as its time; for OSSDe operation there is no other sign.
+    pub(super) fn overdue(&mut self, after: After) {
+        if after == After::Ossde {
+            let within = fsct_reports::measurement::time(self.session.profile.ossde_within_ms * 1_000_000);
+            let expected = format!("without a wake-up OSSDe operation within {within} of the Ready pulse");
+            let verdict = if self.judging.demands { Verdict::Fail } else { Verdict::Remark };
+            self.reason(verdict, "lines/OSSDe", "5.3.3, 5.7, Figure 21", &expected, "the outputs do not switch ON");
         }
     }
 

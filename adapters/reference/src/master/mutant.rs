@@ -174,6 +174,10 @@ catalogue! {
             "The verify record carries FSP_TechParCRC 0."
         WakeUpBeforeReadyPulse "wake-up-before-ready-pulse", "5.1":
             "The wake-up follows the supply and does not wait for the Ready pulse."
+        WakeUpForEver "wake-up-for-ever", "7.2":
+            "When nobody answers the wake-up it is repeated without limit."
+        WaitsOnPlainPort "waits-on-a-plain-port", "7.2":
+            "A port without safety waits for a Ready pulse as well."
         NoSecondSupplyCycle "no-second-supply-cycle", "5.1":
             "A port whose Ready pulse did not come in time is given up for good."
         TimeToReadyTooShort "time-to-ready-too-short", "5.1":

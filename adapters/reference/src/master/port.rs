@@ -170,6 +170,9 @@ impl PortUnit {
     fn start(&mut self, now: u64, seen: &mut Sink<'_>) {
         match self.port_mode() {
             port_mode::SAFETYCOM | port_mode::MIXEDSAFETYCOM => self.wait_on_ready_pulse(now, seen),
+            port_mode::IOL_MANUAL | port_mode::IOL_AUTOSTART if self.is(MasterMutant::WaitsOnPlainPort) => {
+                self.wait_on_ready_pulse(now, seen);
+            }
             port_mode::IOL_MANUAL | port_mode::IOL_AUTOSTART => {
                 self.supply(true, seen);
                 self.phase = Phase::WakeUp { at: now + MS, done: 0 };
@@ -360,8 +363,8 @@ impl PortUnit {
     fn wake_up(&mut self, now: u64, done: u8, fscp: Option<[u8; 8]>, seen: &mut Sink<'_>) {
         seen.push(Seen::Line { port: self.number, line: Line::WakeUp, level: true });
         let Some(device) = self.device else {
-            if done + 1 < WAKE_UPS {
-                self.phase = Phase::WakeUp { at: now + WAKE_UP_RETRY_NS, done: done + 1 };
+            if done + 1 < WAKE_UPS || self.is(MasterMutant::WakeUpForEver) {
+                self.phase = Phase::WakeUp { at: now + WAKE_UP_RETRY_NS, done: done.saturating_add(1) };
             } else {
                 self.start_again(now, seen);
             }
