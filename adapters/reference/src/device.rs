@@ -23,6 +23,9 @@ pub(crate) const PORT: u8 = 1;
 /// EventQualifier of an Error that appears, from the application of a device (base standard).
 const ERROR_APPEARS: u8 = 0xF4;
 
+/// Edges told during one stimulus before test pulses are left out.
+const EDGES_AT_ONCE: usize = 24;
+
 /// How far a time stamp of the real clock may be off: a stimulus may wait that long inside the process.
 pub(crate) const REAL_UNCERTAINTY_NS: u64 = 100_000;
 
@@ -293,11 +296,19 @@ impl Session {
         self.images.pass(image)
     }
 
-    /// Edges that are due by `now`.
+    /// Edges that are due by `now`, as many as may be told at once.
     fn drive(&mut self, now: u64, seen: &mut Sink<'_>) {
+        let mut told = 0;
         while let Some((at, line, level)) = self.lines.due(now) {
             seen.at = at;
             seen.push_line(line, level);
+            told += 1;
+            if told >= EDGES_AT_ONCE {
+                self.lines.skip(now);
+                if told >= 2 * EDGES_AT_ONCE {
+                    break;
+                }
+            }
         }
     }
 

@@ -56,19 +56,19 @@ impl Lines {
             Some(Mutant::ReadyPulseLong) => 1_001 * US,
             _ => pulse_ns,
         };
-        let rise = now + if is(Mutant::ReadyPulseLate) { 5_001 * MS } else { SELF_TEST_NS };
-        let fall = rise + pulse_ns;
-        let ready = fall + if is(Mutant::WakeUpLate) { 51 * US } else { READY_NS };
+        let rise = now.saturating_add(if is(Mutant::ReadyPulseLate) { 5_001 * MS } else { SELF_TEST_NS });
+        let fall = rise.saturating_add(pulse_ns);
+        let ready = fall.saturating_add(if is(Mutant::WakeUpLate) { 51 * US } else { READY_NS });
         let recovery = match (edition, mutant) {
             (Edition::V1_1, Some(Mutant::OssdeEarly)) => 699 * US,
             (Edition::V1_1, _) => 900 * US,
             (Edition::Iec2022, Some(Mutant::OssdeEarly)) => 1_000 * MS,
             (Edition::Iec2022, _) => 1_200 * MS,
         };
-        let ossde = fall + recovery;
+        let ossde = fall.saturating_add(recovery);
         let mut script = VecDeque::new();
         if is(Mutant::OnInSelfTest) {
-            script.extend([(now + MS, Line::Iq, true), (now + 2 * MS, Line::Iq, false)]);
+            script.extend([(now.saturating_add(MS), Line::Iq, true), (now.saturating_add(2 * MS), Line::Iq, false)]);
         }
         let asleep = is(Mutant::ShutDownLong) && off_ns.is_some_and(|off| off < 2_000 * MS);
         if !is(Mutant::NoReadyPulse) && !asleep {
@@ -79,7 +79,10 @@ impl Lines {
             script.push_back((fall, Line::Cq, false));
         }
         if is(Mutant::SecondReadyPulse) {
-            script.extend([(fall + 200 * US, Line::Cq, true), (fall + 300 * US, Line::Cq, false)]);
+            script.extend([
+                (fall.saturating_add(200 * US), Line::Cq, true),
+                (fall.saturating_add(300 * US), Line::Cq, false),
+            ]);
         }
         let mut lines = Lines {
             edition,
@@ -120,6 +123,14 @@ impl Lines {
         let level = if edge.1 == Line::Iq { &mut self.levels.1 } else { &mut self.levels.0 };
         *level = edge.2;
         Some(edge)
+    }
+
+    /// Leaves out the test pulses that were due until `now`: nobody can be told of as many as fit into a long time.
+    pub fn skip(&mut self, now: u64) {
+        if self.phase == Phase::Ossde && self.levels == (true, true) {
+            self.script.clear();
+            self.round = now;
+        }
     }
 
     /// A wake-up request. Whether the device answers the messages that follow.
@@ -174,7 +185,7 @@ impl Lines {
         };
         let second = !(self.mutant == Some(Mutant::DemandOnOneLine) && !level);
         self.script.push_back((at, Line::Cq, level));
-        self.script.extend(second.then_some((at + skew, Line::Iq, level)));
+        self.script.extend(second.then_some((at.saturating_add(skew), Line::Iq, level)));
         self.round = at;
     }
 
@@ -187,10 +198,10 @@ impl Lines {
             (Some(Mutant::TestPulseLong), _) => 2 * TEST_PERIOD_NS,
             _ => TEST_PERIOD_NS,
         };
-        self.round += period;
+        self.round = self.round.saturating_add(period);
         let shift = SHIFT_NS.min(period / 2);
-        let pulse = |line, from: u64| [(from, line, false), (from + width, line, true)];
+        let pulse = |line, from: u64| [(from, line, false), (from.saturating_add(width), line, true)];
         self.script.extend(pulse(Line::Cq, self.round));
-        self.script.extend(pulse(Line::Iq, self.round + shift));
+        self.script.extend(pulse(Line::Iq, self.round.saturating_add(shift)));
     }
 }

@@ -153,3 +153,11 @@ fn power_off_takes_the_levels_along() {
     bench.pass(150 * MS);
     assert_eq!(edges(&bench.apply(&[Stimulus::Power(false)])), ["150000 C/Q 0", "150000 I/Q 0", "150000 L+ 0"]);
 }
+
+#[test]
+fn a_long_time_shows_the_first_test_pulses_and_goes_on_after_it() {
+    let mut bench = Bench::on(Edition::V1_1, Options::default());
+    let seen = bench.pass(3_600_000 * MS);
+    assert!((20..=64).contains(&seen.len()), "{}", seen.len());
+    assert_eq!(bench.pass(101 * MS), ["3600100000 C/Q 0", "3600100500 C/Q 1"]);
+}

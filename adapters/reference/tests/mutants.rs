@@ -4,7 +4,7 @@
 mod common;
 
 use common::*;
-use fsct_adapters::{Observation, Octets, Service, Stimulus, Variant};
+use fsct_adapters::{Line, Observation, Octets, Service, Stimulus, Variant};
 use fsct_protocol::crc::crc16;
 use fsct_protocol::fsp::Protocol;
 use fsct_protocol::spdu::Status;
@@ -195,6 +195,7 @@ fn life(variant: Variant, options: Options) -> Vec<Observation> {
     life.records();
     life.exchanges();
     life.timers();
+    life.lines();
     life.seen
 }
 
@@ -265,6 +266,20 @@ impl Life {
             self.power_cycle();
         }
         self.write(0x4202, &right);
+    }
+
+    /// Woken up in time, left alone until OSSDe operation, and a demand there.
+    fn lines(&mut self) {
+        let demand = |on| Stimulus::Set { port: 1, service: Service::OssdeDemand, value: Octets::bit(on) };
+        self.power_cycle();
+        self.advance(100_800_000);
+        self.apply(Stimulus::Drive { port: 1, line: Line::WakeUp, level: true });
+        self.power_cycle();
+        (0..140).for_each(|_| self.advance(50 * MS));
+        self.apply(demand(true));
+        self.advance(50 * MS);
+        self.apply(demand(false));
+        self.power_cycle();
     }
 
     /// From the first SPDU on.
