@@ -190,7 +190,7 @@ impl Run<'_> {
         if let Some(problem) = problems.first() {
             return (self.not_run(planned, Execution::ToolError, "tool/case", &problem.to_string()), false);
         }
-        let profile = planned.profile(self.profile);
+        let profile = planned.profile(self.profile, bench.description.clock.kind);
         let variant = planned.binding.variant;
         let setups: Vec<Setup> = (0..bench.description.ports)
             .map_while(|index| setup(&profile, self.allowed, &bench.description, variant, index))

@@ -21,9 +21,9 @@ pub struct Planned<'l> {
 
 impl Planned<'_> {
     /// The profile the case is judged by: that of the run, with the FSP_Watchdog the case chooses.
-    pub fn profile<'p>(&self, profile: &'p Profile) -> Cow<'p, Profile> {
+    pub fn profile<'p>(&self, profile: &'p Profile, clock: ClockKind) -> Cow<'p, Profile> {
         match self.binding.watchdog_ms() {
-            Some(ms) => Cow::Owned(profile.with_watchdog(ms)),
+            Some(ms) => Cow::Owned(profile.with_watchdog(ms, clock)),
             None => Cow::Borrowed(profile),
         }
     }
@@ -146,7 +146,7 @@ fn excluded(library: &Library, profile: &Profile, description: &Description, pla
     }
     if let Some(ms) = binding.watchdog_ms()
         && description.clock.kind == ClockKind::Real
-        && profile.with_watchdog(ms).master_cycle_time_ns < profile.master_cycle_time_ns
+        && profile.with_watchdog(ms, ClockKind::Real).master_cycle_time_ns < profile.master_cycle_time_ns
     {
         let cycle_us = profile.master_cycle_time_ns / 1_000;
         return Some(format!(

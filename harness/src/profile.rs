@@ -4,7 +4,7 @@ use crate::oracle::{Mask, Tolerances};
 use crate::problem::{Problem, Source};
 use crate::tree::Fields;
 use crate::yaml;
-use fsct_adapters::{Description, Role};
+use fsct_adapters::{ClockKind, Description, Role};
 use fsct_protocol::ProtMode;
 use fsct_protocol::crc::Reading;
 use fsct_protocol::fsp::{Authenticity, INDEX_AUTHENTICITY, INDEX_PROTOCOL, INDEX_VERIFY, Protocol, VerifyRecord};
@@ -78,6 +78,9 @@ pub struct Profile {
     /// Tolerances the profile takes away.
     pub strict: Mask,
 }
+
+/// Exchanges within a watchdog that are enough where nothing hinges on their number.
+const EXCHANGES: u64 = 2_000;
 
 /// The feature of a profile that tells an FSP_TechParCRC other than 0.
 const ARMED: &str = "armed";
@@ -187,10 +190,13 @@ impl Profile {
         }
     }
 
-    /// This profile with another FSP_Watchdog, and a MasterCycleTime that fits into it: at most two fifths.
-    pub fn with_watchdog(&self, watchdog_ms: u16) -> Profile {
-        let most = u64::from(watchdog_ms) * 400_000;
-        Profile { watchdog_ms, master_cycle_time_ns: self.master_cycle_time_ns.min(most), ..self.clone() }
+    /// This profile with another FSP_Watchdog, and a MasterCycleTime that fits into it: at most two fifths. Where the tester
+    /// moves the clock exchanges may also come more slowly, some thousands to the watchdog, for its instant is exact anyway.
+    pub fn with_watchdog(&self, watchdog_ms: u16, clock: ClockKind) -> Profile {
+        let watchdog_us = u64::from(watchdog_ms) * 1_000;
+        let least_us = if clock == ClockKind::Virtual { watchdog_us / EXCHANGES } else { 0 };
+        let master_cycle_time_ns = self.master_cycle_time_ns.max(least_us * 1_000).min(watchdog_us * 1_000 / 5 * 2);
+        Profile { watchdog_ms, master_cycle_time_ns, ..self.clone() }
     }
 
     /// FSP_Watchdog in nanoseconds.
