@@ -13,6 +13,8 @@ use maud::{Markup, html};
 const MOST: usize = 18;
 const LANES: usize = 8;
 const SPANS: usize = 8;
+/// Measured spans whose limits have a place of their own on the axis.
+const LIMITED: usize = 3;
 /// Instants at the beginning when what needs a reader is later.
 const HEAD: usize = 6;
 const WIDTH: f64 = 900.0;
@@ -149,6 +151,11 @@ pub fn timing(case: &CaseRecord) -> Markup {
     let reader = spans.iter().find(|value| value.verdict > Verdict::Pass).map(|value| end(value));
     let mut times = edges.clone();
     times.extend(spans.iter().map(|value| end(value)));
+    // The limits of what needs a reader most are instants too, or a limit just missed would not be seen.
+    let mut first = spans.clone();
+    first.sort_by_key(|value| std::cmp::Reverse(value.verdict));
+    let limits = |value: &&Measurement| [value.min, value.max].map(|it| it.map(|it| value.at_ns.saturating_add(it)));
+    times.extend(first.iter().take(LIMITED).flat_map(limits).flatten());
     let axis = Axis::of(times, reader);
     let shown = |value: &&&Measurement| axis.shows(value.at_ns) && axis.shows(end(value));
     let mut spans: Vec<&Measurement> = spans.iter().filter(shown).copied().collect();
@@ -162,7 +169,7 @@ pub fn timing(case: &CaseRecord) -> Markup {
     html! {
         p.soft {
             "Lines over time, not to scale; shaded is what the limits of a measured time permit."
-            @if let Some((_, left_out)) = axis.gap { " " (left_out) " instants with edges are left out." }
+            @if let Some((_, left_out)) = axis.gap { " " (left_out) " instants are left out." }
             @if case.elided > 0 { " The record itself left out " (case.elided) " entries." }
             @if more_lanes > 0 { " " (more_lanes) " more lines are not drawn." }
         }
@@ -235,7 +242,7 @@ fn span(value: &Measurement, axis: &Axis, y: f64) -> Markup {
         @if value.min.is_some() || value.max.is_some() {
             rect.permitted x=(permitted.0) y=(y - 7.0) width=(tenth((permitted.1 - permitted.0).max(0.0))) height="14" {}
         }
-        @for at in [value.min, value.max].into_iter().flatten().map(limit) { line.limit x1=(at) y1=(y - 8.0) x2=(at) y2=(y + 8.0) {} }
+        @for at in [value.min, value.max].into_iter().flatten().map(limit).filter(|x| *x < RIGHT) { line.limit x1=(at) y1=(y - 8.0) x2=(at) y2=(y + 8.0) {} }
         g class=(format!("value {class}")) {
             path d=(format!("M{from} {y}H{to}M{from} {y}l6 -3v6z")) {}
             @if value.high.is_some() { path d=(format!("M{to} {y}l-6 -3v6z")) {} }

@@ -107,6 +107,11 @@ fn a_timing_diagram_draws_the_lines_and_the_measured_time() {
     let drawn = part(&html, r#"<svg class="timing""#, "</svg>");
     assert!(drawn.contains("L+ on at 0 s; C/Q on at 100 ms, off at 100.75 ms"), "{drawn}");
     assert!(drawn.contains("✓ t_RP 750 us ± 1 us (500 us to 1000 us)"), "{drawn}");
+    // A limit just missed has a place of its own.
+    let (_, missed) = reports("missed", vec![timed(1, vec![ready_pulse(499 * US, Verdict::Fail)])]);
+    let missed = part(&missed, r#"<svg class="timing""#, "</svg>");
+    assert_eq!(missed.matches(r#"class="limit""#).count(), 2, "{missed}");
+    assert!(missed.contains(">100.499 ms<") && missed.contains(">100.5 ms<"), "{missed}");
     let (_, still) = reports("still", vec![passed(1)]);
     assert!(!still.contains(r#"<svg class="timing""#) && !still.contains("<h2>Measured</h2>"));
 }
@@ -118,7 +123,7 @@ fn thousands_of_test_pulses_are_a_diagram_of_a_few_and_say_so() {
     let (_, html) = reports("pulses", vec![case]);
     let drawn = part(&html, r#"<svg class="timing""#, "</svg>");
     assert!(drawn.len() < 8_000, "{}", drawn.len());
-    assert!(html.contains("4985 instants with edges are left out"));
+    assert!(html.contains("4987 instants are left out"));
 }
 
 #[test]
