@@ -5,12 +5,14 @@ use crate::chart::chart;
 use crate::decode::Side;
 use crate::duts::Duts;
 use crate::html::word;
+use crate::measured_html::of_case;
 use crate::record::{CaseRecord, Reason, RequirementRef};
 use crate::story::around;
 use crate::summary::{execution_name, verdict_name};
 use crate::text::{short, visible as clean};
 use maud::{Markup, html};
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
+use std::collections::BTreeSet;
 
 /// Characters of one text, say an observation.
 const TEXT: usize = 600;
@@ -21,12 +23,14 @@ const LISTED: usize = 80;
 pub struct Room<'r> {
     left: Cell<usize>,
     duts: Duts<'r>,
+    /// Anchors of the cases shown in full.
+    full: RefCell<BTreeSet<String>>,
 }
 
 impl<'r> Room<'r> {
     /// A page without room yet, about these DUTs.
     pub fn new(duts: Duts<'r>) -> Room<'r> {
-        Room { left: Cell::new(0), duts }
+        Room { left: Cell::new(0), duts, full: RefCell::default() }
     }
 
     /// The DUTs of the run.
@@ -39,11 +43,24 @@ impl<'r> Room<'r> {
         self.left.set(self.left.get().saturating_add(octets));
     }
 
+    /// Where a reader finds a case: itself when it is shown in full, or what is said of its id.
+    pub fn anchor_of(&self, case: &CaseRecord) -> String {
+        let own = anchor(&case.key, case.dut);
+        if self.full.borrow().contains(&own) { own } else { anchor(&case.id, case.dut) }
+    }
+
     /// The markup when there is room for it.
     pub fn take(&self, markup: Markup) -> Option<Markup> {
         self.left.set(self.left.get().checked_sub(markup.0.len())?);
         Some(markup)
     }
+}
+
+/// A place in the page for a key or an id on a DUT.
+pub fn anchor(name: &str, dut: usize) -> String {
+    let plain = |c: char| if c.is_ascii_alphanumeric() || "-._".contains(c) { c } else { '_' };
+    let name: String = name.chars().take(TEXT).map(plain).collect();
+    format!("case-{dut}-{name}")
 }
 
 /// A case that needs a reader; `None` when there is no room left even without steps and chart.
@@ -57,16 +74,19 @@ pub fn full(case: &CaseRecord, room: &Room<'_>) -> Option<Markup> {
         p { "Judges " (requirements(case)) }
         @for reason in &case.reasons { (why(reason, case)) }
         @for (id, text) in &case.tolerances { p.remark { span.word { "● " (clean(id)) } " " (short(text, TEXT)) } }
+        (of_case(case))
         @if !around.is_empty() { pre tabindex="0" { (clean(&around)) } }
         p { "Run it again:" }
         pre.replay tabindex="0" { (clean(&case.replay)) }
     })?;
+    let id = anchor(&case.key, case.dut);
+    room.full.borrow_mut().insert(id.clone());
     Some(html! {
-        section.case {
+        section.case id=(id) {
             (told)
             details {
                 summary { "Steps and sequence chart" }
-                (body(case, room).unwrap_or_else(|| html! { p.soft { "Left out to keep this page small; all of it is in run.jsonl." } }))
+                (in_order(case, room).unwrap_or_else(|| html! { p.soft { "Left out to keep this page small; all of it is in run.jsonl." } }))
             }
         }
     })
@@ -78,8 +98,14 @@ pub fn requirements(case: &CaseRecord) -> String {
     case.requirements.iter().map(of).collect::<Vec<_>>().join(", ")
 }
 
-/// Steps with their checks, and the chart; `None` when there is no room for them.
+/// What was measured, steps with their checks, and the chart; `None` when there is no room for them.
 pub fn body(case: &CaseRecord, room: &Room<'_>) -> Option<Markup> {
+    let measured = room.take(of_case(case))?;
+    let in_order = in_order(case, room)?;
+    Some(html! { (measured) (in_order) })
+}
+
+fn in_order(case: &CaseRecord, room: &Room<'_>) -> Option<Markup> {
     room.take(html! {
         (steps(case))
         @if !case.trace.is_empty() { (chart(case, Side::of(&case.role))) }

@@ -6,6 +6,7 @@ use crate::decode::Side;
 use crate::duts::Duts;
 use crate::journal::Run;
 use crate::machine::Machine;
+use crate::measured_html;
 use crate::record::{CaseRecord, DutInfo, Execution, MatrixCell, MatrixInfo, Verdict};
 use crate::summary::Summary;
 use crate::text::{short, visible as clean};
@@ -56,6 +57,7 @@ pub fn render(run: &Run) -> String {
                     (coverage(run, &summary))
                     (tolerances(run, &summary))
                     (attention(run, &room))
+                    (measured_html::section(run, &room))
                     (suites(run, &room))
                     (not_applicable(run))
                 }
@@ -445,7 +447,7 @@ fn row(id: &str, dut: usize, cases: &[&CaseRecord], room: &Room<'_>) -> Markup {
     let counts = counted(cases.iter().copied());
     let title = cases.first().map_or_else(String::new, |case| short(&case.title, NAME));
     let heading = html! {
-        span.word { (clean(id)) } " " (title) (of(room.duts().label(dut).as_deref()))
+        span.word id=(case_html::anchor(id, dut)) { (clean(id)) } " " (title) (of(room.duts().label(dut).as_deref()))
         @for ((said, class), count) in &counts { " · " span class=(class) { (said) " × " (count) } }
     };
     let details = html! {

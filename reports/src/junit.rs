@@ -6,6 +6,9 @@
 //!
 //! A suite names in its properties `profile`, `dut`, `url` the DUTs its cases are about, one after the other; in a run of several
 //! DUTs each test case has a property `dut` too, with the same text.
+//!
+//! What was measured stands in properties named by its symbol: `t_RP`, `t_RP.limit`, `t_RP.margin`, `t_RP.uncertainty`; of a
+//! second value of the same symbol `t_RP#2`, `t_RP#2.limit` and so on.
 
 use crate::decode::Side;
 use crate::duts::Duts;
@@ -132,10 +135,29 @@ fn test_case(case: &CaseRecord, header: &Header) -> TestCase {
             test.add_property(Property::new(name, clean(&value)));
         }
     }
+    for (name, value) in measured(case) {
+        test.add_property(Property::new(clean(&name), clean(&value)));
+    }
     if case.verdict == Verdict::Remark {
         test.set_system_out(clean(&story(case, side)));
     }
     test
+}
+
+/// Names and values of what was measured; consumers keep only one of equal names.
+fn measured(case: &CaseRecord) -> Vec<(String, String)> {
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut all = Vec::new();
+    for value in &case.measurements {
+        let count = counts.entry(&value.symbol).or_default();
+        *count += 1;
+        let name = if *count == 1 { value.symbol.clone() } else { format!("{}#{count}", value.symbol) };
+        all.push((name.clone(), value.plain()));
+        all.push((format!("{name}.limit"), value.limits()));
+        all.extend(value.margin().map(|margin| (format!("{name}.margin"), margin)));
+        all.push((format!("{name}.uncertainty"), value.show(value.uncertainty)));
+    }
+    all
 }
 
 fn joined(parts: impl Iterator<Item = String>) -> String {

@@ -4,7 +4,7 @@ use crate::record::Verdict;
 use serde::{Deserialize, Serialize};
 
 /// What a value is counted in.
-#[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Counted {
     /// A time in nanoseconds.
@@ -53,17 +53,28 @@ impl Measurement {
         }
     }
 
-    /// The value: `750 us`, `19 ms to 20 ms`, `more than 5.01 s`, with the uncertainty where there is one.
-    pub fn value(&self) -> String {
-        let plain = match self.high {
+    /// The value: `750 us`, `19 ms to 20 ms`, `more than 5.01 s`.
+    pub fn plain(&self) -> String {
+        match self.high {
             Some(high) if high == self.low => self.show(self.low),
             Some(high) => format!("{} to {}", self.show(self.low), self.show(high)),
             None => format!("more than {}", self.show(self.low)),
-        };
+        }
+    }
+
+    /// The value with the uncertainty where there is one.
+    pub fn value(&self) -> String {
+        let plain = self.plain();
         match self.uncertainty {
             0 => plain,
             off => format!("{plain} ± {}", self.show(off)),
         }
+    }
+
+    /// Distance to the nearest limit with its sign: `250 us`, `-1 us`.
+    pub fn margin(&self) -> Option<String> {
+        let margin = self.margin?;
+        Some(format!("{}{}", if margin < 0 { "-" } else { "" }, self.show(margin.unsigned_abs())))
     }
 
     /// The limits: `500 us to 1000 us`, `at most 5 s`, `no limit`.

@@ -5,5 +5,6 @@ mod compare;
 mod coverage;
 mod decode;
 mod journal;
+mod measured;
 mod rendered;
 mod summary;
