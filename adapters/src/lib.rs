@@ -12,6 +12,7 @@
 //! ```
 
 mod address;
+mod clock_proof;
 mod connect;
 mod contract;
 mod error;
@@ -28,6 +29,7 @@ mod socket;
 mod stream;
 
 pub use address::{Address, AddressError};
+pub use clock_proof::{ClockProof, Finding, Monotonic, PAUSE_NS, Trip, Watch};
 pub use connect::{CONNECT_TIMEOUT, connect, connect_within};
 pub use contract::{
     Clock, ClockKind, Description, Dut, Identity, Line, MAX_BATCH, MAX_RECORD, Mode, Observation, Octets, Offer, Pco,

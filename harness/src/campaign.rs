@@ -1,6 +1,7 @@
 //! A whole run: connect, preflight, one case after the other, each recorded before the next begins.
 
 use crate::case::Covered;
+use crate::case::model::Step;
 use crate::engine::{Engine, Judging, Outcome, execution};
 use crate::library::Library;
 use crate::oracle::{Mask, Setup};
@@ -9,12 +10,14 @@ use crate::profile::Profile;
 use crate::session::Session;
 use crate::tester::Tester;
 use fsct_adapters::{
-    ClockKind, Description, Dut, DutError, Latency, MADE_UP, Observation, Pco, Seen, Stimulus, Variant,
+    ClockKind, ClockProof, Description, Dut, DutError, Finding, Latency, MADE_UP, Observation, Pco, Seen, Stimulus,
+    Variant, Watch,
 };
 use fsct_protocol::crc::Reading;
 use fsct_protocol::spdu::Port;
 use fsct_reports::record::{
-    CaseRecord, DutInfo, Execution, LatencyInfo, Reason, RequirementRef, StepRecord, VariantInfo, Verdict, Walked,
+    CaseRecord, ClockProofInfo, DutInfo, Execution, LatencyInfo, Reason, RequirementRef, StepRecord, VariantInfo,
+    Verdict, Walked,
 };
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::SeedableRng;
@@ -38,6 +41,8 @@ pub struct Bench {
     pub description: Description,
     /// How long the way to it and back takes, where that was measured.
     pub latency: Option<Latency>,
+    /// What a loop-back made of what it states of its clock, where that was tried.
+    pub proof: Option<ClockProof>,
 }
 
 impl Bench {
@@ -50,13 +55,27 @@ impl Bench {
         let mut observed = Vec::new();
         dut.apply(&[Stimulus::Other { kind: MADE_UP, octets: vec![0x5A] }], &mut observed)?;
         match observed.as_slice() {
-            [Observation { seen: Seen::Unsupported, .. }] => Ok(Bench { dut, description, latency: None }),
+            [Observation { seen: Seen::Unsupported, .. }] => Ok(Bench { dut, description, latency: None, proof: None }),
             _ => Err(DutError::Contract {
                 what:
                     "a stimulus that does not exist was not answered `unsupported`, so its other answers mean nothing"
                         .to_owned(),
             }),
         }
+    }
+
+    /// Holds what the DUT states of its clock against a loop-back. A stamp of a real clock is trusted no further than was shown;
+    /// when stamps contradict the statement no timed case is judged.
+    ///
+    /// # Errors
+    /// [`DutError`] when a round trip fails.
+    pub fn prove(mut self, watch: &mut dyn Watch) -> Result<Bench, DutError> {
+        let proof = ClockProof::measure(self.dut.as_mut(), self.description.clock, watch)?;
+        if self.description.clock.kind == ClockKind::Real {
+            self.description.clock.uncertainty_ns = proof.uncertainty_ns();
+        }
+        self.proof = Some(proof);
+        Ok(self)
     }
 
     /// Measures the way to the DUT and back. When its clock is real, what varies on that way adds to the uncertainty of
@@ -189,6 +208,12 @@ impl Run<'_> {
         let steps = planned.case.steps(&planned.binding, &mut problems);
         if let Some(problem) = problems.first() {
             return (self.not_run(planned, Execution::ToolError, "tool/case", &problem.to_string()), false);
+        }
+        if let Some(proof) = bench.proof.filter(|proof| proof.finding == Finding::Contradicted)
+            && steps.iter().any(Step::is_timed)
+        {
+            let why = format!("its time stamps contradict what it states of its clock: {}", proof_info(&proof).said());
+            return (self.not_run(planned, Execution::DutError, "dut/clock", &why), false);
         }
         let profile = planned.profile(self.profile, bench.description.clock.kind);
         let variant = planned.binding.variant;
@@ -409,6 +434,17 @@ pub fn setup(
     })
 }
 
+/// The loop-back for the record.
+fn proof_info(proof: &ClockProof) -> ClockProofInfo {
+    let ClockProof { finding, stamps, stated_ns, shown_ns, off_ns, step_ns, drift_ppm } = *proof;
+    let finding = match finding {
+        Finding::Proved => "proved",
+        Finding::Unproved => "unproved",
+        Finding::Contradicted => "contradicted",
+    };
+    ClockProofInfo { finding: finding.to_owned(), stamps, stated_ns, shown_ns, off_ns, step_ns, drift_ppm }
+}
+
 /// What the DUT says of itself, and what was measured of the way to it, for the record.
 pub fn dut_info(url: &str, profile: &Profile, bench: &Bench) -> DutInfo {
     let description = &bench.description;
@@ -432,6 +468,7 @@ pub fn dut_info(url: &str, profile: &Profile, bench: &Bench) -> DutInfo {
             p99_ns: nanoseconds(latency.p99),
             max_ns: nanoseconds(latency.max),
         }),
+        clock_proof: bench.proof.as_ref().map(proof_info),
         offers: description
             .offers
             .iter()

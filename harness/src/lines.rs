@@ -66,7 +66,7 @@ impl Lines {
     pub fn woken(&mut self, at: u64, after_ns: u64, answered: bool, uncertainty_ns: u64) {
         let (low, high) = if answered { (0, after_ns) } else { (after_ns + 1, u64::MAX) };
         let uncertainty = 2 * uncertainty_ns;
-        let episode = self.ended.len() as u64;
+        let (episode, at) = (self.ended.len() as u64, at.saturating_sub(after_ns));
         self.woken.push(Measured { quantity: Quantity::ReadyForWakeUp, low, high, uncertainty, at, episode });
     }
 

@@ -8,6 +8,11 @@ use fsct_adapters::{ClockKind, Description, Pco, Role};
 use fsct_protocol::Edition;
 use std::borrow::Cow;
 
+/// What tells the runs of one case apart in its key.
+pub const REPEAT: &str = "run";
+/// The longest FSP_Watchdog a case chooses on a real clock unless the user asks for more: it is lived through several times.
+const LONG_MS: u16 = 1_000;
+
 /// One expanded case.
 #[derive(Clone, Debug)]
 pub struct Planned<'l> {
@@ -49,6 +54,10 @@ pub struct Selection {
     pub edition: Option<Edition>,
     /// Every n-th case from the i-th on, i from 1.
     pub shard: Option<(usize, usize)>,
+    /// How often each case runs; [`REPEAT`] in the key tells them apart. 0 and 1: once, and the key stays as it is.
+    pub repeat: u32,
+    /// On a real clock: also cases with an FSP_Watchdog above [`LONG_MS`].
+    pub long: bool,
 }
 
 impl Selection {
@@ -96,13 +105,16 @@ pub fn plan<'l>(
     let all = selection.suites.is_empty() && selection.filter.is_empty();
     for case in library.cases().filter(|case| !all || case.role == description.role) {
         let expansion = case.expand(&description.offers)?;
-        for binding in expansion.points {
+        let times = selection.repeat.max(1);
+        let points = expansion.points.into_iter();
+        for binding in points.flat_map(|point| repeated(point, times)) {
             let key = format!("{}{}", case.id, binding.key());
             let planned = Planned { case, binding, key };
             if !selection.matches(&planned) {
                 continue;
             }
-            match excluded(library, profile, description, &planned) {
+            let long = too_long(selection, description, &planned.binding);
+            match long.or_else(|| excluded(library, profile, description, &planned)) {
                 Some(term) => plan.not_applicable.push((planned.key, term)),
                 None => plan.cases.push(planned),
             }
@@ -125,6 +137,21 @@ pub fn plan<'l>(
     Ok(plan)
 }
 
+/// This point as often as asked, each with its number when that is more than once.
+fn repeated(point: Binding, times: u32) -> impl Iterator<Item = Binding> {
+    (1..=times).map(move |run| match times {
+        1 => point.clone(),
+        _ => point.with(REPEAT, run.to_string()),
+    })
+}
+
+/// Why a case takes too long to be lived through unasked.
+fn too_long(selection: &Selection, description: &Description, binding: &Binding) -> Option<String> {
+    let ms = binding.watchdog_ms().filter(|ms| *ms > LONG_MS)?;
+    (description.clock.kind == ClockKind::Real && !selection.long)
+        .then(|| format!("FSP_Watchdog of {ms} ms in real time: only with --long"))
+}
+
 fn steps_of(case: &Case, binding: &Binding) -> Vec<crate::case::model::Step> {
     case.steps(binding, &mut Vec::new())
 }
@@ -143,6 +170,11 @@ fn excluded(library: &Library, profile: &Profile, description: &Description, pla
     let most = steps_of(case, binding).iter().map(|step| step.port).max().unwrap_or(1);
     if most > description.ports {
         return Some(format!("it takes {most} ports, the DUT has {}", description.ports));
+    }
+    if let Some(ms) = binding.watchdog_ms()
+        && (profile.parameterization == Parameterization::None || !description.pcos.contains(&Pco::Acyclic))
+    {
+        return Some(format!("the DUT cannot be given an FSP_Watchdog of {ms} ms"));
     }
     if let Some(ms) = binding.watchdog_ms()
         && description.clock.kind == ClockKind::Real

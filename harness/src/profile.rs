@@ -195,7 +195,10 @@ impl Profile {
     pub fn with_watchdog(&self, watchdog_ms: u16, clock: ClockKind) -> Profile {
         let watchdog_us = u64::from(watchdog_ms) * 1_000;
         let least_us = if clock == ClockKind::Virtual { watchdog_us / EXCHANGES } else { 0 };
-        let master_cycle_time_ns = self.master_cycle_time_ns.max(least_us * 1_000).min(watchdog_us * 1_000 / 5 * 2);
+        let master_cycle_time_ns = self
+            .master_cycle_time_ns
+            .max(least_us * 1_000)
+            .min(watchdog_us * 1_000 / 5 * 2 / (self.answer_latency + 1));
         Profile { watchdog_ms, master_cycle_time_ns, ..self.clone() }
     }
 

@@ -4,6 +4,7 @@ mod batch;
 
 pub use batch::Item;
 
+use crate::campaign::nanoseconds;
 use crate::conditions::Sides;
 use crate::link::Link;
 use crate::oracle::{Mask, Mismatch, Setup};
@@ -326,7 +327,7 @@ impl<'d> Session<'d> {
 
     /// On a real clock: sleeps until the next exchange is due. `false` on a virtual one.
     fn wait_for_turn(&mut self, ns: u64) -> bool {
-        let Some((_, due)) = &mut self.pace else { return false };
+        let Some((zero, due)) = &mut self.pace else { return false };
         let now = Instant::now();
         *due += Duration::from_nanos(ns);
         match due.checked_duration_since(now) {
@@ -334,6 +335,8 @@ impl<'d> Session<'d> {
             // Behind: go on from here instead of hurrying after.
             None => *due = now,
         }
+        // When it was due and not when the answer came: an answer may be late that was given in time.
+        self.now = nanoseconds(due.saturating_duration_since(*zero));
         true
     }
 
@@ -396,10 +399,8 @@ impl<'d> Session<'d> {
         let at = match &self.pace {
             // On a virtual clock the harness knows the time; stamps only tell when within an advance.
             None => self.now,
-            Some((zero, _)) => {
-                self.now = zero.elapsed().as_nanos() as u64;
-                observation.at
-            }
+            // Counted from the beginning of the case, as everything a case waits for.
+            Some(_) => observation.at.saturating_sub(zero),
         };
         match &observation.seen {
             Seen::Image { port, octets } => {

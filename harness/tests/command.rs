@@ -184,7 +184,7 @@ fn an_unknown_requirement_is_named() {
 #[case("R-11.5.3-09", "T25")]
 #[case("FSD-0125", "T25")]
 #[case("A19", "sequential")]
-#[case("t_RO", "at least 1100 ms")]
+#[case("t_RO", "iec2022: 1100 ms to data sheet")]
 fn explain_knows_it(#[case] id: &str, #[case] says: &str) {
     let explain = fsct(&["explain", id]);
     assert_eq!(explain.code, 0);

@@ -59,8 +59,11 @@ struct TableDevice {
     pdin: Octets,
     received: Pd,
     answer: Option<Octets>,
+    /// FSP_Watchdog of the verify record.
+    watchdog_ns: u64,
 }
 
+/// FSP_Watchdog where nothing was written.
 const WATCHDOG_NS: u64 = 20_000_000;
 
 impl TableDevice {
@@ -79,6 +82,7 @@ impl TableDevice {
             pdin: Octets::zero(2),
             received: Pd::safe(2),
             answer: None,
+            watchdog_ns: WATCHDOG_NS,
         }
     }
 
@@ -129,7 +133,7 @@ impl TableDevice {
             self.last_valid = Some(control.mcount);
         }
         self.received = Pd::new(view.pd()).expect("as long as before");
-        self.deadline = Some(now + WATCHDOG_NS);
+        self.deadline = Some(now + self.watchdog_ns);
         self.send();
     }
 
@@ -138,7 +142,7 @@ impl TableDevice {
             if let Some(scl) = &mut self.scl {
                 scl.expire();
             }
-            self.deadline = Some(deadline + WATCHDOG_NS);
+            self.deadline = Some(deadline + self.watchdog_ns);
             self.send();
         }
     }
@@ -225,8 +229,10 @@ impl Dut for TableDevice {
                     }
                 }
                 Stimulus::Read { .. } => seen.push(Seen::Value(vec![0; 12])),
-                Stimulus::Write { index, .. } => {
+                Stimulus::Write { index, data, .. } => {
                     if *index == 0x4202 {
+                        let ms = data.get(13..15).map_or(0, |ms| u64::from(ms[0]) << 8 | u64::from(ms[1]));
+                        self.watchdog_ns = ms * 1_000_000;
                         self.start();
                     }
                     seen.push(Seen::Written);

@@ -162,3 +162,14 @@ proptest! {
         prop_assert_eq!(strict.margin, looks.margin);
     }
 }
+
+/// Table 7 permits 500 us and 1000 us themselves: exact, they pass; with an uncertainty nobody knows.
+#[test]
+fn an_exact_value_on_a_limit_passes() {
+    let bounds = Bounds { min: Some(500), max: Some(1_000) };
+    for (value, wanted) in [(499, Verdict::Fail), (500, Verdict::Pass), (1_000, Verdict::Pass), (1_001, Verdict::Fail)]
+    {
+        assert_eq!(judge(value, value, 0, bounds).verdict, wanted, "{value}");
+        assert_eq!(judge(value, value, 1, bounds).verdict, Verdict::Inconclusive, "{value}");
+    }
+}

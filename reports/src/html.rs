@@ -155,6 +155,9 @@ fn facts_of(dut: &DutInfo) -> Markup {
             @if !dut.clock.is_empty() {
                 dt { "Served" } dd { (short(&dut.pcos.join(", "), 4 * NAME)) }
                 dt { "Clock" } dd { (name(&dut.clock)) ", resolution " (dut.resolution_ns) " ns, uncertainty ± " (dut.uncertainty_ns) " ns" }
+                @if let Some(proof) = &dut.clock_proof {
+                    dt { "Loop-back" } dd { (short(&proof.said(), 4 * NAME)) }
+                }
                 @if let Some(trip) = dut.round_trip {
                     dt { "Round trip" } dd { "median " (micro(trip.median_ns)) ", " (micro(trip.min_ns)) " to " (micro(trip.max_ns)) }
                 }

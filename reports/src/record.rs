@@ -161,8 +161,43 @@ pub struct DutInfo {
     /// How long the way to it and back took, where that was measured: on a serial line.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub round_trip: Option<LatencyInfo>,
+    /// What a loop-back made of the statement about the clock.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clock_proof: Option<ClockProofInfo>,
     /// What it can be configured as, one text an offer.
     pub offers: Vec<String>,
+}
+
+/// The clock of a DUT held against a loop-back before the first case, in nanoseconds.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ClockProofInfo {
+    /// `proved`, `unproved` or `contradicted`.
+    pub finding: String,
+    /// Stamps looked at.
+    pub stamps: usize,
+    /// Uncertainty of a stamp that the DUT states.
+    pub stated_ns: u64,
+    /// How far off, either way, half of the stamps can have been at the most; of a virtual clock the worst of all.
+    pub shown_ns: u64,
+    /// How far off a stamp was at least; 0: nothing shows that any was.
+    pub off_ns: u64,
+    /// All steps between stamps are multiples of this; 0: there was none.
+    pub step_ns: u64,
+    /// Least and greatest drift against the clock of fsct that explains the stamps, in millionths; real clocks only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drift_ppm: Option<(i64, i64)>,
+}
+
+impl ClockProofInfo {
+    /// One line for a reader. The finding is a text of the record: to be escaped where it is shown.
+    pub fn said(&self) -> String {
+        let drift = self.drift_ppm.map_or_else(String::new, |(low, high)| format!(", drift {low} to {high} ppm"));
+        let off = if self.off_ns > 0 { format!(", off by {} ns or more", self.off_ns) } else { String::new() };
+        format!(
+            "{} by {} stamps: stated ± {} ns, shown ± {} ns{off}, steps of {} ns{drift}",
+            self.finding, self.stamps, self.stated_ns, self.shown_ns, self.step_ns
+        )
+    }
 }
 
 /// Round trips to a DUT, measured before the first case, in nanoseconds.

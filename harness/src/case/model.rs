@@ -32,6 +32,13 @@ pub struct Step {
     pub measure: Vec<Wanted>,
 }
 
+impl Step {
+    /// Whether what it shows depends on time: waits, what is done to lines, and measurements.
+    pub fn is_timed(&self) -> bool {
+        !self.measure.is_empty() || matches!(self.action, Action::Wait(_) | Action::Pass { .. } | Action::Wake(_))
+    }
+}
+
 /// Something a step wants measured.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Wanted {

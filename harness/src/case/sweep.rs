@@ -63,7 +63,7 @@ impl Binding {
         self.value(WATCHDOG).and_then(|ms| ms.parse().ok())
     }
 
-    fn with(&self, name: &str, value: String) -> Binding {
+    pub(crate) fn with(&self, name: &str, value: String) -> Binding {
         let mut point = self.clone();
         point.values.push((name.to_owned(), value));
         point

@@ -2,7 +2,7 @@
 
 use crate::campaign::Bench;
 use crate::problem::suggestion;
-use fsct_adapters::{Address, Dut, DutError, REPLY_TIMEOUT, connect_within};
+use fsct_adapters::{Address, Dut, DutError, Monotonic, REPLY_TIMEOUT, connect_within};
 use fsct_reference::{
     ConstantDevice, ConstantMaster, EchoDevice, EchoMaster, FsDevice, FsMaster, MasterOptions, NullDevice, NullMaster,
     Options,
@@ -44,7 +44,7 @@ pub fn parse(text: &str) -> Result<Address, String> {
 pub fn connect(address: &Address) -> Result<Bench, DutError> {
     match address {
         Address::Serial { .. } => connect_line(address),
-        address => Bench::greet(reach(address)?),
+        address => Bench::greet(reach(address)?)?.prove(&mut Monotonic::default()),
     }
 }
 
@@ -84,7 +84,8 @@ fn connect_line(address: &Address) -> Result<Bench, DutError> {
     loop {
         let mut dut = fsct_adapters::connect(address)?;
         dut.hello()?;
-        match Bench::greet(dut).and_then(Bench::measure) {
+        let proved = Bench::greet(dut).and_then(|bench| bench.prove(&mut Monotonic::default()));
+        match proved.and_then(Bench::measure) {
             Err(DutError::Timeout { .. } | DutError::Line { .. }) if repeats.next().is_some() => {}
             outcome => return outcome,
         }

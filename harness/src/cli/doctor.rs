@@ -176,6 +176,9 @@ fn tell(diagnosis: &Diagnosis, description: &Description, hello: Duration, laten
         "clock",
         format!("{}, resolution {} ns, uncertainty ± {} ns", dut.clock, dut.resolution_ns, dut.uncertainty_ns),
     );
+    if let Some(proof) = &dut.clock_proof {
+        row("loop-back", proof.said());
+    }
     dut.offers.iter().for_each(|offer| row("offers", offer.clone()));
     row(
         "latency",

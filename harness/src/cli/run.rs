@@ -48,6 +48,12 @@ pub struct Args {
     /// Part I of N of the cases
     #[arg(long, value_name = "I/N", value_parser = shard)]
     shard: Option<(usize, usize)>,
+    /// Runs each case so often, `run=N` in its key
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    repeat: u32,
+    /// On a real clock, cases with an FSP_Watchdog above 1 s as well: they take minutes
+    #[arg(long)]
+    long: bool,
     /// Seed that everything random derives from
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -104,8 +110,14 @@ impl Candidate<'_> {
 
 fn execute(args: &Args) -> Result<u8, u8> {
     let mut library = args.cases.load()?;
-    let mut selection =
-        Selection { suites: Vec::new(), filter: args.filter.clone(), edition: args.edition, shard: args.shard };
+    let mut selection = Selection {
+        suites: Vec::new(),
+        filter: args.filter.clone(),
+        edition: args.edition,
+        shard: args.shard,
+        repeat: args.repeat,
+        long: args.long,
+    };
     for suite in &args.suites {
         if is_file(suite) {
             let name = library.add_suite(Path::new(suite)).map_err(|problems| show(&problems))?;
@@ -308,6 +320,12 @@ fn command(args: &Args, url: &str, profile: &Profile) -> String {
     }
     if let Some(folder) = &args.cases.folder {
         command += &format!(" --cases '{}'", folder.display());
+    }
+    if args.repeat > 1 {
+        command += &format!(" --repeat {}", args.repeat);
+    }
+    if args.long {
+        command += " --long";
     }
     for id in &args.strict {
         command += &format!(" --strict {id}");

@@ -108,6 +108,10 @@ impl Engine<'_, '_> {
         let too_long = |value: &Measured| value.judge(bounds).verdict == fsct_lines::Verdict::Fail;
         let values: Vec<Measured> =
             values.into_iter().filter(|value| !known || value.high != u64::MAX || too_long(value)).collect();
+        if values.is_empty() && outside != Outside::Fail {
+            // A value nobody has to have.
+            return;
+        }
         if values.is_empty() {
             return self.reason(
                 Verdict::Inconclusive,
@@ -120,7 +124,9 @@ impl Engine<'_, '_> {
         for value in values {
             let judged = match quantity {
                 Quantity::DeviceWatchdog | Quantity::MasterWatchdog => {
-                    judge_looks(value.low, value.high, value.uncertainty, profile.master_cycle_time_ns, bounds)
+                    // What the application tells is no look.
+                    let apart = if value.low == value.high { 0 } else { profile.master_cycle_time_ns };
+                    judge_looks(value.low, value.high, value.uncertainty, apart, bounds)
                 }
                 _ => value.judge(bounds),
             };
