@@ -37,7 +37,7 @@ pub fn judge(low: u64, high: u64, uncertainty: u64, bounds: Bounds) -> Judged {
     let (least, most) = (low.saturating_sub(uncertainty), high.saturating_add(uncertainty));
     let below = bounds.min.is_some_and(|min| high.saturating_add(uncertainty) < min);
     let above = bounds.max.is_some_and(|max| low.saturating_sub(uncertainty) > max);
-    let inside = bounds.min.is_none_or(|min| least > min) && bounds.max.is_none_or(|max| most <= max);
+    let inside = bounds.min.is_none_or(|min| least >= min) && bounds.max.is_none_or(|max| most <= max);
     let verdict = match (below || above, inside) {
         (true, _) => Verdict::Fail,
         (false, true) if bounds != Bounds::default() => Verdict::Pass,
