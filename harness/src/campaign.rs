@@ -348,7 +348,8 @@ impl Run<'_> {
         record
     }
 
-    fn blank(&self, planned: &Planned<'_>) -> CaseRecord {
+    /// The record of a case before anything has come of it.
+    pub fn blank(&self, planned: &Planned<'_>) -> CaseRecord {
         let Planned { case, binding, key } = planned;
         let edition = binding.variant.edition;
         let requirements = case

@@ -3,6 +3,7 @@
 //! load -> plan -> execute -> judge -> record. Each stage is a function from one plain type to the next.
 
 pub mod campaign;
+pub mod capture;
 pub mod case;
 pub mod channel;
 pub mod cli;
@@ -12,6 +13,7 @@ pub mod engine;
 pub mod expect;
 pub mod gauntlet;
 pub mod injection;
+pub mod judging;
 pub mod keeper;
 pub mod ledger;
 pub mod library;
@@ -28,6 +30,7 @@ pub mod problem;
 pub mod profile;
 pub mod session;
 pub mod stopwatch;
+pub mod tape;
 pub mod tester;
 pub mod tours;
 pub mod trace;

@@ -11,6 +11,9 @@ use fsct_adapters::Line;
 /// Width of a wake-up pulse, in nanoseconds. From the base standard: it tells one apart and is never a limit.
 pub const WAKE_UP: std::ops::RangeInclusive<u64> = 75_000..=85_000;
 
+/// The most by which the width of a wake-up pulse may be uncertain where it has to be told from other pulses, in nanoseconds.
+pub const MOST_BLUR: u64 = 20_000;
+
 /// Quiet on C/Q around a wake-up pulse once there is communication, in nanoseconds. The octets of COM2 hold pulses of three
 /// bits (78 us), but none without another edge within eleven bits (286 us).
 const WAKE_UP_QUIET: u64 = 300_000;
@@ -160,6 +163,8 @@ impl Candidate {
 #[derive(Clone, Debug)]
 pub struct Decoder {
     wake_ups: WakeUps,
+    /// How much narrower or wider than [`WAKE_UP`] a wake-up may look, in nanoseconds.
+    blur: u64,
     now: u64,
     has_cq: bool,
     cq: bool,
@@ -185,6 +190,7 @@ impl Decoder {
     pub fn new(start: u64, levels: Levels, wake_ups: WakeUps) -> Decoder {
         let mut decoder = Decoder {
             wake_ups,
+            blur: 0,
             now: start,
             has_cq: levels.cq.is_some(),
             cq: levels.cq.unwrap_or(false),
@@ -204,6 +210,14 @@ impl Decoder {
             decoder.phase = Phase::Talking(false);
         }
         decoder
+    }
+
+    /// An edge may be off by so much either way, in nanoseconds, so wake-up pulses may look narrower or wider than they are.
+    /// What counts as one grows by [`MOST_BLUR`] at the most.
+    #[must_use]
+    pub fn blurred(mut self, uncertainty_ns: u64) -> Decoder {
+        self.blur = uncertainty_ns.saturating_mul(2).min(MOST_BLUR);
+        self
     }
 
     /// The episode that is going on, as far as it is decided.
@@ -366,7 +380,7 @@ impl Decoder {
                 }
                 if let Some(rise) = self.cq_rise {
                     let told = self.wake_ups == WakeUps::Told;
-                    if told || now.saturating_sub(rise) > *WAKE_UP.end() {
+                    if told || now.saturating_sub(rise) > *WAKE_UP.end() + self.blur {
                         self.set_ready(Pulse { rise, fall: None });
                     }
                 }
@@ -457,7 +471,9 @@ impl Decoder {
     }
 
     fn is_wake_up(&self, rise: u64, fall: u64) -> bool {
-        self.wake_ups == WakeUps::Pulses && WAKE_UP.contains(&fall.saturating_sub(rise))
+        let width = fall.saturating_sub(rise);
+        let (least, most) = (*WAKE_UP.start() - self.blur, *WAKE_UP.end() + self.blur);
+        self.wake_ups == WakeUps::Pulses && (least..=most).contains(&width)
     }
 
     fn self_test_pulse(&mut self, rise: u64, fall: u64) {
@@ -604,7 +620,7 @@ pub fn decode(
     wake_ups: WakeUps,
     mut each: impl FnMut(&Episode),
 ) -> Result<(), RecordingError> {
-    let mut decoder = Decoder::new(0, recording.levels(), wake_ups);
+    let mut decoder = Decoder::new(0, recording.levels(), wake_ups).blurred(recording.uncertainty_ns());
     while let Some(edge) = recording.next_edge()? {
         if let Some(episode) = decoder.edge(edge) {
             each(&episode);

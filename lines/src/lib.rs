@@ -18,7 +18,7 @@ mod vcd_writer;
 
 pub use chart::{Chart, ChartError};
 pub use edge::{Edge, Levels, Recording, RecordingError};
-pub use episode::{Decoder, Episode, IqBefore, POWER_ON, Pulse, WAKE_UP, WakeUps, WakeUpsSeen, decode};
+pub use episode::{Decoder, Episode, IqBefore, MOST_BLUR, POWER_ON, Pulse, WAKE_UP, WakeUps, WakeUpsSeen, decode};
 pub use filter::Filter;
 pub use judge::{Bounds, Judged, Verdict, judge, judge_looks};
 pub use limit::{Limit, Limits, Outside, Row, Subject, Unit, Verify};

@@ -1,6 +1,6 @@
 //! Recordings as VCD.
 
-use crate::{Edge, Recording};
+use crate::{Edge, Levels, Recording};
 use fsct_adapters::Line;
 use std::fmt;
 use std::io::{self, Write};
@@ -32,16 +32,27 @@ impl<W: Write> VcdWriter<W> {
     /// # Errors
     /// What the writing meets.
     pub fn new(writer: W, recording: &impl Recording) -> io::Result<VcdWriter<W>> {
+        VcdWriter::begin(writer, recording.uncertainty_ns(), recording.levels(), true)
+    }
+
+    /// Like [`VcdWriter::new`] for lines as a logic analyser sees them: there is no event, for a wake-up is a pulse on C/Q.
+    ///
+    /// # Errors
+    /// What the writing meets.
+    pub fn of_levels(writer: W, uncertainty_ns: u64, levels: Levels) -> io::Result<VcdWriter<W>> {
+        VcdWriter::begin(writer, uncertainty_ns, levels, false)
+    }
+
+    fn begin(writer: W, uncertainty_ns: u64, levels: Levels, event: bool) -> io::Result<VcdWriter<W>> {
         let mut writer = vcd::Writer::new(writer);
         writer.version("fsct")?;
-        writer.comment(&format!("{UNCERTAINTY} {} ns", recording.uncertainty_ns()))?;
+        writer.comment(&format!("{UNCERTAINTY} {uncertainty_ns} ns"))?;
         writer.timescale(1, TimescaleUnit::NS)?;
         writer.add_module("port")?;
-        let levels = recording.levels();
         let mut ids = Line::ALL.map(|(line, _, _)| (line, None));
         for ((line, id), (_, _, name)) in ids.iter_mut().zip(Line::ALL) {
             if *line == Line::WakeUp {
-                *id = Some(writer.add_var(VarType::Event, 1, WAKE_UP, None)?);
+                *id = if event { Some(writer.add_var(VarType::Event, 1, WAKE_UP, None)?) } else { None };
             } else if levels.of(*line).is_some() {
                 *id = Some(writer.add_wire(1, name)?);
             }
@@ -74,13 +85,21 @@ impl<W: Write> VcdWriter<W> {
         self.writer.change_scalar(id, edge.level)
     }
 
+    /// Writes until when the levels are known; more may follow.
+    ///
+    /// # Errors
+    /// As with an edge.
+    pub fn until(&mut self, end: u64) -> io::Result<()> {
+        self.to(end)?;
+        self.writer.flush()
+    }
+
     /// Writes until when the levels are known.
     ///
     /// # Errors
     /// As with an edge.
     pub fn finish(mut self, end: u64) -> io::Result<()> {
-        self.to(end)?;
-        self.writer.flush()
+        self.until(end)
     }
 
     fn to(&mut self, at: u64) -> io::Result<()> {

@@ -4,6 +4,7 @@
 
 mod bench;
 mod campaign;
+mod capture;
 mod check;
 mod crc;
 mod doctor;
@@ -54,6 +55,8 @@ enum Command {
     Doctor(doctor::Args),
     /// Inject errors by the million: every corruption of an SPDU, or random faults; failures are shrunk to a few actions
     Campaign(campaign::Args),
+    /// Judge the line cases by a recording: VCD, sigrok .sr, CSV of sigrok or Saleae Logic
+    Capture(capture::Args),
     /// List the cases there are
     List(list::Args),
     /// Check cases, ledger and profiles without a DUT
@@ -89,6 +92,7 @@ pub fn main() -> ExitCode {
         Command::Run(args) => run::run(&args),
         Command::Doctor(args) => doctor::run(&args),
         Command::Campaign(args) => campaign::run(&args),
+        Command::Capture(args) => capture::run(&args),
         Command::List(args) => list::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Explain(args) => explain::run(&args),

@@ -1,8 +1,10 @@
 //! `fsct simulate`: the reference FS-Device or FS-Master as a DUT in another process.
 
 use super::{RIG, USAGE, fail};
-use fsct_adapters::{Address, AddressError, Dut, Listener, serve};
+use crate::tape::Tape;
+use fsct_adapters::{Address, AddressError, Dut, Listener, Role as Side, serve};
 use fsct_reference::{FsDevice, FsMaster, MasterOptions, Options};
+use std::path::{Path, PathBuf};
 
 /// Arguments of `fsct simulate`.
 #[derive(clap::Args, Debug)]
@@ -24,6 +26,9 @@ pub struct Args {
     /// Ports of an FS-Master
     #[arg(long, value_name = "N")]
     ports: Option<u8>,
+    /// Write the lines of port 1 to this file, for `fsct capture` or a viewer
+    #[arg(long, value_name = "FILE")]
+    vcd: Option<PathBuf>,
 }
 
 #[derive(Copy, Clone, Debug, clap::ValueEnum)]
@@ -42,17 +47,17 @@ pub fn run(args: &Args) -> u8 {
     option("ports", args.ports.map(|ports| ports.to_string()));
     match args.role {
         Role::Device => match Options::from_query(&query) {
-            Ok(options) => serve_on(args, "FS-Device", &|| Box::new(FsDevice::new(options))),
+            Ok(options) => serve_on(args, "FS-Device", Side::Device, &|| Box::new(FsDevice::new(options))),
             Err(error) => fail(USAGE, error),
         },
         Role::Master => match MasterOptions::from_query(&query) {
-            Ok(options) => serve_on(args, "FS-Master", &|| Box::new(FsMaster::new(options))),
+            Ok(options) => serve_on(args, "FS-Master", Side::Master, &|| Box::new(FsMaster::new(options))),
             Err(error) => fail(USAGE, error),
         },
     }
 }
 
-fn serve_on(args: &Args, what: &str, make: &(dyn Fn() -> Box<dyn Dut> + Sync)) -> u8 {
+fn serve_on(args: &Args, what: &str, side: Side, make: &(dyn Fn() -> Box<dyn Dut> + Sync)) -> u8 {
     let listener = match listen(&args.listen) {
         Ok(listener) => listener,
         Err(why) => return fail(USAGE, why),
@@ -62,10 +67,23 @@ fn serve_on(args: &Args, what: &str, make: &(dyn Fn() -> Box<dyn Dut> + Sync)) -
         Ok(address) => eprintln!("reference {what} at {address}"),
         Err(_) => eprintln!("reference {what} on stdin and stdout"),
     }
-    match serve(&listener, make) {
+    let served = match &args.vcd {
+        None => serve(&listener, make),
+        Some(path) => match tape(path, make) {
+            Ok(tape) => serve(&listener, &|| tape.over(make(), side)),
+            Err(why) => return fail(USAGE, why),
+        },
+    };
+    match served {
         Ok(()) => 0,
         Err(error) => fail(RIG, error),
     }
+}
+
+/// The file the lines are written to, with what the DUT says of its clock.
+fn tape(path: &Path, make: &(dyn Fn() -> Box<dyn Dut> + Sync)) -> Result<Tape, String> {
+    let clock = make().hello().map_err(|error| error.to_string())?.clock;
+    Tape::create(path, clock.uncertainty_ns).map_err(|error| format!("{} cannot be written: {error}", path.display()))
 }
 
 fn listen(place: &str) -> Result<Listener, String> {

@@ -2,10 +2,10 @@
 
 use super::{Engine, Stop};
 use crate::case::model::{After, Wake, Wanted};
-use fsct_adapters::{Line, Mode, Role, Stimulus};
-use fsct_lines::{Answer, Claim, Given, Judged, Measured, Outside, Quantity, judge_looks};
-use fsct_reports::measurement::{Counted, Measurement};
-use fsct_reports::record::{Check, Verdict};
+use crate::judging::{Asked, Finding, Judge};
+use fsct_adapters::{Line, Mode, Stimulus};
+use fsct_lines::{Claim, Measured, Quantity};
+use fsct_reports::record::Verdict;
 
 /// Steps while a Ready pulse is awaited: shorter than the shortest one that passes.
 const COARSE_NS: u64 = 400_000;
@@ -16,7 +16,7 @@ const OVERDUE_NS: u64 = 100_000_000;
 /// What a woken FS-Device may take until it answers: three transmission rates are tried.
 const ANSWER_NS: u64 = 50_000_000;
 
-impl Engine<'_, '_> {
+impl<'s> Engine<'s, '_> {
     /// Lets time pass until the Ready pulse is over, or both outputs are ON; the time of that, unless it is overdue.
     pub(super) fn await_lines(&mut self, after: After) -> Result<Option<u64>, Stop> {
         let bound = |quantity: Quantity| {
@@ -91,66 +91,23 @@ impl Engine<'_, '_> {
             _ => self.session.link_mut().lines.measured(quantity, now, uncertainty_ns),
         };
         self.checks += 1;
-        let symbol = quantity.symbol();
-        let edition = self.session.setup().edition;
-        let profile = self.session.profile;
-        let Some((limit, row)) =
-            self.judging.limits.get(symbol).and_then(|limit| limit.row(edition).map(|row| (limit, row)))
-        else {
-            let observed = format!("{edition} has no such limit");
-            return self.reason(Verdict::Inconclusive, "case/limit", "", &format!("a limit {symbol}"), &observed);
+        let ruled = match self.line_judge().quantity(quantity) {
+            Ok(ruled) => ruled,
+            Err(finding) => return self.found(&finding),
         };
-        let bounds = limit.bounds(edition, |name| profile.declared(name)).unwrap_or_default();
-        let outside = limit.outside(edition);
-        let what = format!("{symbol}: {}", limit.about);
-        // A time that is still running says nothing unless it is too long already.
+        // A time that is still running says nothing unless it is too long already, or nothing else is known.
         let known = values.iter().any(|value| value.high != u64::MAX);
-        let too_long = |value: &Measured| value.judge(bounds).verdict == fsct_lines::Verdict::Fail;
-        let values: Vec<Measured> =
-            values.into_iter().filter(|value| !known || value.high != u64::MAX || too_long(value)).collect();
-        if values.is_empty() && outside != Outside::Fail {
-            // A value nobody has to have.
+        let values: Vec<Measured> = values.into_iter().filter(|value| !known || !ruled.says_nothing(value)).collect();
+        if values.is_empty() {
+            if let Some(finding) = ruled.nothing("") {
+                self.found(&finding);
+            }
             return;
         }
-        if values.is_empty() {
-            return self.reason(
-                Verdict::Inconclusive,
-                &format!("measure/{symbol}"),
-                &row.clause,
-                &what,
-                "nothing that could be measured",
-            );
-        }
         for value in values {
-            let judged = match quantity {
-                Quantity::DeviceWatchdog | Quantity::MasterWatchdog => {
-                    // What the application tells is no look.
-                    let apart = if value.low == value.high { 0 } else { profile.master_cycle_time_ns };
-                    judge_looks(value.low, value.high, value.uncertainty, apart, bounds)
-                }
-                _ => value.judge(bounds),
-            };
-            let verdict = weigh(judged, outside);
-            let measurement = Measurement {
-                symbol: symbol.to_owned(),
-                about: limit.about.clone(),
-                clause: row.clause.clone(),
-                step: self.step,
-                at_ns: value.at,
-                counted: if quantity.is_ratio() { Counted::PartsPerBillion } else { Counted::Nanoseconds },
-                low: value.low,
-                high: (value.high != u64::MAX).then_some(value.high),
-                uncertainty: value.uncertainty,
-                min: bounds.min,
-                max: bounds.max,
-                margin: judged.margin,
-                verdict,
-            };
-            if verdict > Verdict::Pass {
-                let expected = format!("{what}, {}", measurement.limits());
-                let observed = measurement.value();
-                let verdict = if self.judging.demands { verdict } else { verdict.min(Verdict::Remark) };
-                self.reason(verdict, &format!("measure/{symbol}"), &row.clause, &expected, &observed);
+            let (measurement, finding) = ruled.value(&value, self.step);
+            if let Some(finding) = finding {
+                self.found(&finding);
             }
             self.outcome.measurements.push(measurement);
         }
@@ -158,50 +115,34 @@ impl Engine<'_, '_> {
 
     fn claim(&mut self, claim: Claim) {
         let now = self.session.now;
-        let edition = self.session.setup().edition;
-        let profile = self.session.profile;
-        let bounds = |quantity: Quantity| {
-            let limit = self.judging.limits.get(quantity.symbol())?;
-            limit.bounds(edition, |name| profile.declared(name))
-        };
-        let given = Given {
-            uncertainty_ns: self.session.description.clock.uncertainty_ns,
-            ossde: self.session.role() == Role::Master || profile.features.iter().any(|feature| feature == "ossde"),
-            ossd_not_before: bounds(Quantity::ReadyToOssd).and_then(|bounds| bounds.min),
-            wait_at_most: bounds(Quantity::WaitForReady).and_then(|bounds| bounds.max),
-        };
-        let answers: Vec<Answer> =
-            self.session.link_mut().lines.episodes(now).iter().map(|episode| claim.ask(episode, given)).collect();
+        let judge = self.line_judge();
+        let mut asked = Asked::default();
+        for episode in self.session.link_mut().lines.episodes(now) {
+            asked.ask(claim, &episode, judge.given());
+        }
         self.checks += 1;
-        let broken = answers.iter().find_map(|answer| match answer {
-            Answer::Broken(at) => Some(*at),
-            _ => None,
-        });
-        let holds = broken.is_none() && answers.contains(&Answer::Holds);
-        let observed = match broken {
-            Some(at) => format!("not so at {}", fsct_reports::measurement::time(at)),
-            None if holds => "so".to_owned(),
-            None => "not seen".to_owned(),
-        };
-        if !holds {
-            let verdict = if broken.is_some() { Verdict::Fail } else { Verdict::Inconclusive };
-            let verdict = if self.judging.demands { verdict } else { verdict.min(Verdict::Remark) };
-            self.reason(verdict, &format!("lines/{}", claim.name()), claim.clause(), claim.about(), &observed);
+        let (check, finding) = asked.end(claim, &judge);
+        if let Some(finding) = finding {
+            self.found(&finding);
         }
         if let Some(record) = self.outcome.steps.last_mut() {
-            let expected = claim.about().to_owned();
-            record.checks.push(Check { key: claim.name().to_owned(), expected, observed, met: holds });
+            record.checks.push(check);
         }
     }
-}
 
-/// What a judged value comes to for the DUT.
-fn weigh(judged: Judged, outside: Outside) -> Verdict {
-    match (judged.verdict, outside) {
-        (fsct_lines::Verdict::Pass, _) | (_, Outside::Recorded) => Verdict::Pass,
-        (fsct_lines::Verdict::Fail, Outside::Fail) => Verdict::Fail,
-        (fsct_lines::Verdict::Fail, Outside::Remark) => Verdict::Remark,
-        (fsct_lines::Verdict::Inconclusive, Outside::Remark) => Verdict::Remark,
-        (fsct_lines::Verdict::Inconclusive, Outside::Fail) => Verdict::Inconclusive,
+    fn line_judge(&self) -> Judge<'s> {
+        Judge {
+            limits: self.judging.limits,
+            edition: self.session.setup().edition,
+            profile: self.session.profile,
+            role: self.session.role(),
+            uncertainty_ns: self.session.description.clock.uncertainty_ns,
+            demands: self.judging.demands,
+        }
+    }
+
+    fn found(&mut self, finding: &Finding) {
+        let Finding { verdict, kind, clause, expected, observed } = finding;
+        self.reason(*verdict, kind, clause, expected, observed);
     }
 }

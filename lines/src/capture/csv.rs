@@ -4,7 +4,7 @@ use super::bounded::Lines;
 use super::channels::{Channel, shown};
 use super::resolution::{self, SECOND};
 use super::{About, Format, MARK, Options, Resolution, SampleRate, Source, Step, bad};
-use crate::{Levels, RecordingError};
+use crate::{Levels, RecordingError, WakeUps};
 use std::io::Read;
 
 type Stream = Box<dyn Read + Send>;
@@ -58,7 +58,7 @@ pub(super) fn open_saleae(stream: Stream, head: &[u8], options: &Options) -> Res
         stated_ns: None,
     };
     let channels = found.map(|place| place.map(|place| channels[place].name.clone()));
-    Ok((About { format: Format::SaleaeCsv, resolution, channels, origin_fs }, reader))
+    Ok((About { format: Format::SaleaeCsv, resolution, channels, origin_fs, wake_ups: WakeUps::Pulses }, reader))
 }
 
 /// The comments, which state the channels and the rate; then the rows, with or without a row of labels before them.
@@ -102,7 +102,7 @@ pub(super) fn open_sigrok(stream: Stream, options: &Options) -> Result<(About, R
     }
     let channels = places.map(|place| place.map(|place| channels[place].name.clone()));
     let resolution = Resolution { step_fs: None, rate, stated_ns: None };
-    Ok((About { format: Format::SigrokCsv, resolution, channels, origin_fs: 0 }, reader))
+    Ok((About { format: Format::SigrokCsv, resolution, channels, origin_fs: 0, wake_ups: WakeUps::Pulses }, reader))
 }
 
 impl Reader {

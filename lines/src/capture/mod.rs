@@ -23,7 +23,7 @@ mod resolution;
 mod sigrok;
 mod vcd;
 
-use crate::{Edge, Levels, Recording, RecordingError};
+use crate::{Edge, Levels, Recording, RecordingError, WakeUps};
 pub use channels::Channels;
 use fsct_adapters::Line;
 pub use resolution::{Resolution, SampleRate, StatedBy};
@@ -97,6 +97,8 @@ struct About {
     channels: [Option<String>; 3],
     /// Time 0 of the recording on the clock of the file, in femtoseconds.
     origin_fs: i128,
+    /// How wake-ups show.
+    wake_ups: WakeUps,
 }
 
 /// How the lines are at a moment.
@@ -213,6 +215,11 @@ impl Capture {
     pub fn channel(&self, line: Line) -> Option<&str> {
         let place = LINES.iter().position(|known| *known == line)?;
         self.about.channels[place].as_deref()
+    }
+
+    /// How wake-ups show: as events where the file declares them, else as pulses on C/Q.
+    pub fn wake_ups(&self) -> WakeUps {
+        self.about.wake_ups
     }
 
     /// What the file is, how far its times can be trusted and which channel is which line, for a report.

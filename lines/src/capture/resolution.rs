@@ -93,8 +93,14 @@ pub struct Resolution {
 
 impl Resolution {
     /// How far the time of an edge may be off, either way: an edge seen in a sample was anywhere since the sample before,
-    /// and a time that the steps do not meet is up to a step off. At least the nanosecond that times are cut to.
+    /// and a time that the steps do not meet is up to a step off. At least the nanosecond that times are cut to, unless the
+    /// file counts nanoseconds and states the uncertainty itself.
     pub fn uncertainty_ns(&self) -> u64 {
+        if let (None, Some(stated), Some(step)) = (self.rate, self.stated_ns, self.step_fs)
+            && step.is_multiple_of(NANOSECOND)
+        {
+            return stated;
+        }
         let step = self.step_fs.unwrap_or(0);
         let femtoseconds = match self.rate {
             None => step,

@@ -3,7 +3,7 @@
 use super::bounded::Allowance;
 use super::channels::Channel;
 use super::{About, Format, Options, Resolution, SampleRate, Source, Step, bad};
-use crate::{Levels, RecordingError};
+use crate::{Levels, RecordingError, WakeUps};
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread;
@@ -70,6 +70,7 @@ pub(super) fn open<S: Read + Seek + Send + 'static>(
         resolution: Resolution { step_fs: None, rate, stated_ns: None },
         channels: places.map(|place| place.map(|place| channels[place].name.clone())),
         origin_fs: 0,
+        wake_ups: WakeUps::Pulses,
     };
     Ok((about, reader))
 }

@@ -5,7 +5,7 @@ use super::channels::{Channel, name_of, shown};
 use super::resolution::{self, SECOND};
 use super::{About, Format, LINES, MARK, Options, Resolution, SampleRate, Source, Step, bad};
 use crate::vcd_writer::{UNCERTAINTY, WAKE_UP};
-use crate::{Levels, RecordingError};
+use crate::{Levels, RecordingError, WakeUps};
 use std::io::{self, BufReader, Read};
 use vcd::{Command, IdCode, ParseError, Parser, Value, VarType};
 
@@ -45,6 +45,7 @@ pub(super) fn open(mut stream: Stream, options: &Options) -> Result<(About, Read
         }
         *id = Some(variable.id);
     }
+    let wake_ups = if header.wake_up.is_some() { WakeUps::Told } else { WakeUps::Pulses };
     let mut reader = Reader {
         parser,
         ids,
@@ -58,7 +59,7 @@ pub(super) fn open(mut stream: Stream, options: &Options) -> Result<(About, Read
     };
     let origin_fs = reader.begin()?;
     let channels = places.map(|place| place.map(|place| channels[place].path.clone()));
-    Ok((About { format: Format::Vcd, resolution, channels, origin_fs }, reader))
+    Ok((About { format: Format::Vcd, resolution, channels, origin_fs, wake_ups }, reader))
 }
 
 struct Variable {
