@@ -184,7 +184,7 @@ impl Suite {
         }
         let edition = self.edition.as_ref().map(|name| name.parse());
         let edition = edition.transpose().map_err(|_| "`edition` is v1.1 or iec2022".to_owned())?;
-        Ok(Selection { suites: self.suites.clone(), filter: self.filter.clone(), edition, shard: None })
+        Ok(Selection { suites: self.suites.clone(), filter: self.filter.clone(), edition, ..Selection::default() })
     }
 }
 
