@@ -1,5 +1,7 @@
 //! Waveforms like the figures of the standard, and what an episode makes of them.
 
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
 use fsct_lines::{Answer, Chart, Claim, Episode, Given, Quantity, WakeUps, decode, measure};
 use rstest::rstest;
 

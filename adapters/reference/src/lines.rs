@@ -183,7 +183,7 @@ impl Lines {
             (Some(Mutant::DiscrepancyLong), Edition::Iec2022) => 1_001 * US,
             _ => SKEW_NS,
         };
-        let second = !(self.mutant == Some(Mutant::DemandOnOneLine) && !level);
+        let second = self.mutant != Some(Mutant::DemandOnOneLine) || level;
         self.script.push_back((at, Line::Cq, level));
         self.script.extend(second.then_some((at.saturating_add(skew), Line::Iq, level)));
         self.round = at;

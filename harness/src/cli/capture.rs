@@ -191,7 +191,9 @@ fn conclude(args: &Args, outcome: &capture::Outcome<'_>, header: &Header, summar
     for dut in &header.duts {
         print(format!("{}: {}", visible(&dut.url), visible(&dut.version)));
         if dut.role == "master" {
-            print("the port is taken for one with safety (SAFETYCOM or MIXEDSAFETYCOM): others wait for no Ready pulse");
+            print(
+                "the port is taken for one with safety (SAFETYCOM or MIXEDSAFETYCOM): others wait for no Ready pulse",
+            );
         }
     }
     for judged in &outcome.judged {
