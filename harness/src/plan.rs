@@ -56,7 +56,7 @@ pub struct Selection {
     pub shard: Option<(usize, usize)>,
     /// How often each case runs; [`REPEAT`] in the key tells them apart. 0 and 1: once, and the key stays as it is.
     pub repeat: u32,
-    /// On a real clock: also cases with an FSP_Watchdog above [`LONG_MS`].
+    /// On a real clock: also cases with an FSP_Watchdog above 1 s.
     pub long: bool,
 }
 
