@@ -283,3 +283,22 @@ fn suites_for_the_other_role_are_not_applicable_with_the_reason() {
     assert_eq!((&summary["cases"], &summary["verdicts"]["pass"]), (&0.into(), &0.into()));
     assert!(summary["not_applicable"].as_u64() > Some(1_000));
 }
+
+/// Cases count in FSP_Watchdog and MasterCycleTime, not in the milliseconds of the reference profile.
+#[rstest]
+fn a_right_dut_passes_with_other_times(
+    #[values("device", "master")] role: &str,
+    #[values((400, 20), (5_000, 60), (1_000, 200))] (cycle_us, watchdog_ms): (u32, u32),
+) {
+    let folder = Folder::new(&format!("times-{role}-{cycle_us}-{watchdog_ms}"));
+    let path = format!("{}/../testcases/profiles/reference-{role}.yaml", env!("CARGO_MANIFEST_DIR"));
+    let own = std::fs::read_to_string(path).expect("it is there");
+    let text = own
+        .replace("MasterCycleTime_us: 1000", &format!("MasterCycleTime_us: {cycle_us}"))
+        .replace("FSP_Watchdog_ms: 20", &format!("FSP_Watchdog_ms: {watchdog_ms}"));
+    assert_ne!(text, own);
+    let profile = folder.file("mine.yaml", &text);
+    let dut = format!("inproc:reference-{role}");
+    let run = fsct(&["run", "--dut", &dut, "--profile", &profile, "--out", &folder.out()]);
+    assert_eq!(run.code, 0, "{}{}", run.out, run.err);
+}
