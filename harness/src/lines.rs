@@ -15,6 +15,10 @@ pub struct Lines {
     woken: Vec<Measured>,
     /// Level of C/Q.
     cq: bool,
+    /// When C/Q rose last.
+    cq_rise: u64,
+    /// Width of the latest pulse on C/Q, in nanoseconds.
+    pulse: Option<u64>,
     /// Level of I/Q.
     iq: bool,
     /// The latest wake-up.
@@ -29,6 +33,8 @@ impl Default for Lines {
             ended: Vec::new(),
             woken: Vec::new(),
             cq: false,
+            cq_rise: 0,
+            pulse: None,
             iq: false,
             woken_at: None,
         }
@@ -39,7 +45,14 @@ impl Lines {
     /// A line has changed, in nanoseconds from the beginning of the case.
     pub fn edge(&mut self, at: u64, line: Line, level: bool) {
         match line {
-            Line::Cq => self.cq = level,
+            Line::Cq => {
+                match (self.cq, level) {
+                    (false, true) => self.cq_rise = at,
+                    (true, false) => self.pulse = Some(at.saturating_sub(self.cq_rise)),
+                    _ => {}
+                }
+                self.cq = level;
+            }
             Line::WakeUp => self.woken_at = Some(at),
             Line::Iq => self.iq = level,
             Line::Power => {}
@@ -50,6 +63,11 @@ impl Lines {
     /// Whether C/Q is high.
     pub fn cq(&self) -> bool {
         self.cq
+    }
+
+    /// Width of the latest pulse on C/Q, in nanoseconds.
+    pub fn pulse(&self) -> Option<u64> {
+        self.pulse
     }
 
     /// Whether I/Q is high.
