@@ -101,6 +101,8 @@ pub struct Session<'d> {
     interrupted: &'d AtomicBool,
     /// Nanoseconds on the clock of the DUT.
     pub now: u64,
+    /// The latest time stamp, counted from the beginning of the case.
+    stamp: u64,
     /// Zero point and next due time of a real clock.
     pace: Option<(Instant, Instant)>,
     /// Answer to the latest read or write.
@@ -136,6 +138,7 @@ impl<'d> Session<'d> {
             last_exchange: 0,
             interrupted,
             now: 0,
+            stamp: 0,
             pace: (description.clock.kind == ClockKind::Real).then_some((start, start)),
             reply: None,
             smi: None,
@@ -147,6 +150,11 @@ impl<'d> Session<'d> {
     /// Whether the DUT serves a point of control and observation.
     pub fn serves(&self, pco: Pco) -> bool {
         self.description.pcos.contains(&pco)
+    }
+
+    /// Until when everything the DUT has done is known: on a real clock it tells what happened meanwhile with its next answer.
+    pub fn told_until(&self) -> u64 {
+        if self.pace.is_some() { self.stamp } else { self.now }
     }
 
     /// The link the case is about at the moment.
@@ -396,6 +404,7 @@ impl<'d> Session<'d> {
 
     fn digest_one(&mut self, stimulus: &Stimulus, observation: &Observation) -> Result<(), Stop> {
         let zero = *self.zero.get_or_insert(observation.at.saturating_sub(self.now));
+        self.stamp = self.stamp.max(observation.at.saturating_sub(zero));
         let at = match &self.pace {
             // On a virtual clock the harness knows the time; stamps only tell when within an advance.
             None => self.now,
@@ -496,7 +505,7 @@ impl<'d> Session<'d> {
 
     /// How often each transition was taken on any port, by the names of the record.
     pub fn taken(&mut self) -> BTreeMap<String, u64> {
-        let (role, now) = (self.role(), self.now);
+        let (role, now) = (self.role(), self.told_until());
         let mut sum = BTreeMap::new();
         for link in &mut self.links {
             // Only a port with safety waits for a Ready pulse.
