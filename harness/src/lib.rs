@@ -2,6 +2,7 @@
 //!
 //! load -> plan -> execute -> judge -> record. Each stage is a function from one plain type to the next.
 
+pub mod annex_i;
 pub mod campaign;
 pub mod capture;
 pub mod case;

@@ -1,5 +1,6 @@
 //! Everything under `testcases/`: carried in the binary, or read from a folder.
 
+use crate::annex_i::{self, AnnexI};
 use crate::case::{self, Case, Covered, Start, Suite, model::Action, model::Step};
 use crate::coverage::Coverage;
 use crate::ledger::{Class, Ledger};
@@ -33,6 +34,8 @@ pub struct Library {
     pub ledger: Ledger,
     /// The error matrix; cases of one's own do without.
     pub matrix: Option<Matrix>,
+    /// What Annex I asks for; cases of one's own do without.
+    pub annex_i: Option<AnnexI>,
     /// Tolerances.
     pub tolerances: Tolerances,
     /// Times and electrical limits; cases of one's own do without.
@@ -105,6 +108,7 @@ impl Library {
         let mut starts = Vec::new();
         let mut ledger = Ledger::default();
         let mut matrix = None;
+        let mut annex_i = None;
         let mut tolerances = None;
         let mut limits = limits::Table::default();
         let mut profiles = BTreeMap::new();
@@ -128,13 +132,14 @@ impl Library {
                 (_, "error-matrix.yaml") => {
                     gather(Matrix::parse(source), &mut problems, |found| matrix = Some(found));
                 }
+                (_, "annex-i.yaml") => gather(AnnexI::parse(source), &mut problems, |found| annex_i = Some(found)),
                 (_, "tolerances.yaml") => {
                     gather(Tolerances::parse(source), &mut problems, |found| tolerances = Some(found));
                 }
                 (_, "limits.yaml") => gather(limits::parse(source), &mut problems, |found| limits = found),
                 _ => {
                     problems.push(Problem::without_place(&source.name, "is in no known place").help(
-                        "known are requirements/, suites/, profiles/, coverage/, starts.yaml, error-matrix.yaml, tolerances.yaml and limits.yaml",
+                        "known are requirements/, suites/, profiles/, coverage/, starts.yaml, error-matrix.yaml, annex-i.yaml, tolerances.yaml and limits.yaml",
                     ))
                 }
             }
@@ -143,7 +148,7 @@ impl Library {
         suites.sort_by_key(|suite: &Suite| suite.group.as_deref() == Some(matrix::GROUP));
         match tolerances {
             Some(tolerances) if problems.is_empty() => {
-                Ok(Library { suites, starts, ledger, matrix, tolerances, limits, profiles, coverage })
+                Ok(Library { suites, starts, ledger, matrix, annex_i, tolerances, limits, profiles, coverage })
             }
             Some(_) => Err(problems),
             None => {
@@ -165,11 +170,24 @@ impl Library {
         Ok(name)
     }
 
-    /// Names of suites and of groups of suites.
+    /// The suites behind a name: a suite, the suites of a group, or all that support an item of Annex I.
+    pub fn members(&self, name: &str) -> Vec<String> {
+        let named = |suite: &&Suite| suite.name == name || suite.group.as_deref() == Some(name);
+        match &self.annex_i {
+            Some(annex) if name == annex_i::NAME => {
+                let all: BTreeSet<String> = annex.suites().into_iter().flat_map(|name| self.members(name)).collect();
+                all.into_iter().collect()
+            }
+            _ => self.suites.iter().filter(named).map(|suite| suite.name.clone()).collect(),
+        }
+    }
+
+    /// Names of suites and of groups of suites, and that of Annex I.
     pub fn names(&self) -> std::vec::IntoIter<&str> {
         let names = self.suites.iter().map(|suite| suite.name.as_str());
         let groups: BTreeSet<&str> = self.suites.iter().filter_map(|suite| suite.group.as_deref()).collect();
-        names.chain(groups).collect::<Vec<_>>().into_iter()
+        let annex = self.annex_i.is_some().then_some(annex_i::NAME);
+        names.chain(groups).chain(annex).collect::<Vec<_>>().into_iter()
     }
 
     /// All cases.
@@ -235,6 +253,9 @@ impl Library {
                     problems.push(Problem::without_place("testcases/error-matrix.yaml", message));
                 }
             }
+        }
+        if let Some(annex) = &self.annex_i {
+            annex.check(self.names(), &self.ledger, &mut problems);
         }
         self.limits.check(&self.ledger, &mut problems);
         for requirement in self.ledger.iter() {

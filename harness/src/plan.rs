@@ -61,14 +61,20 @@ pub struct Selection {
 }
 
 impl Selection {
+    /// Whether the suite of a case is among those asked for, or nothing is asked for.
+    fn names(&self, case: &Case) -> bool {
+        let group = case.group.as_ref();
+        self.suites.is_empty()
+            || self.suites.contains(&case.suite)
+            || group.is_some_and(|group| self.suites.contains(group))
+    }
+
     /// Whether a case is selected. A term is `suite:NAME`, `req:R-...`, `covers:T25`, or a text that occurs in the key or
     /// title, with `*` for anything in between.
     pub fn matches(&self, planned: &Planned<'_>) -> bool {
         let Planned { case, key, binding } = planned;
         let group = case.group.as_ref();
-        (self.suites.is_empty()
-            || self.suites.contains(&case.suite)
-            || group.is_some_and(|group| self.suites.contains(group)))
+        self.names(case)
             && self.edition.is_none_or(|edition| binding.variant.edition == edition)
             && self.filter.iter().all(|term| match term.split_once(':') {
                 Some(("suite", name)) => case.suite == name || group.is_some_and(|group| group == name),
@@ -101,9 +107,11 @@ pub fn plan<'l>(
     description: &Description,
 ) -> Result<Plan<'l>, Problem> {
     let mut plan = Plan::default();
-    // Whoever names nothing wants what the DUT is for; whoever names something is told why it does not apply.
-    let all = selection.suites.is_empty() && selection.filter.is_empty();
-    for case in library.cases().filter(|case| !all || case.role == description.role) {
+    // Whoever names nothing, or suites for both roles, wants what the DUT is for; whoever names what is for the other role
+    // alone is told why it does not apply.
+    let own = |case: &&Case| case.role == description.role;
+    let all = selection.filter.is_empty() && library.cases().filter(own).any(|case| selection.names(case));
+    for case in library.cases().filter(|case| !all || own(case)) {
         let expansion = case.expand(&description.offers)?;
         let times = selection.repeat.max(1);
         let points = expansion.points.into_iter();

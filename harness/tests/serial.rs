@@ -114,6 +114,29 @@ fn what_varies_on_the_way_to_a_real_clock_is_uncertain() {
     assert_eq!(number(&dut["uncertainty_ns"]), OWN_UNCERTAINTY_NS + (max - min) / 2);
 }
 
+/// The same Ready pulse of 550 us, 50 us inside its limit: time stamps behind a line do not tell, a recording does.
+#[test]
+fn what_a_line_leaves_open_a_precise_recording_decides() {
+    let folder = Folder::new("serial-and-capture");
+    let out = folder.out();
+    let pulse = ["device", "--pulse-us", "550"];
+    let behind_a_line = Simulated::new(&[&pulse[..], &["--clock", "real"]].concat());
+    let profile = ["--profile", "device-real-time", "--filter", "FSD-1701", "--edition", "iec2022"];
+    let live = [&["run", "--dut", &behind_a_line.url, "--out", &out][..], &profile].concat();
+    let live = fsct(&live).output().expect("it runs");
+    assert_eq!(live.status.code(), Some(5), "{live:?}");
+    assert!(String::from_utf8_lossy(&live.stderr).contains("measure/t_RP"), "{live:?}");
+
+    let vcd = folder.0.join("lines.vcd").display().to_string();
+    let binary = assert_cmd::cargo::cargo_bin("fsct");
+    let url = format!("exec:{} simulate {} --listen stdio --vcd {vcd}", binary.display(), pulse.join(" "));
+    fsct(&["run", "device-lines", "--filter", "FSD-1701", "--dut", &url, "--out", &out]).output().expect("it runs");
+    let recorded = ["capture", &vcd, "--profile", "device-real-time", "--edition", "iec2022", "--out", &out];
+    let recorded = fsct(&recorded).output().expect("it runs");
+    let case = folder.lines().into_iter().find(|line| line["case"]["id"] == "FSD-1701").expect("it was judged");
+    assert_eq!(case["case"]["verdict"], "pass", "{recorded:?}");
+}
+
 /// Octets a board has received when its cable is pulled: some cases have ended then, and one is in its middle.
 const PULLED: usize = 100_000;
 

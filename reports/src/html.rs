@@ -4,10 +4,12 @@ use crate::case_html::{self, Room};
 use crate::coverage_html;
 use crate::decode::Side;
 use crate::duts::Duts;
+use crate::evidence_html;
 use crate::journal::Run;
 use crate::machine::Machine;
+use crate::matrix_html;
 use crate::measured_html;
-use crate::record::{CaseRecord, DutInfo, Execution, MatrixCell, MatrixInfo, Verdict};
+use crate::record::{CaseRecord, DutInfo, Execution, Verdict};
 use crate::summary::Summary;
 use crate::text::{short, visible as clean};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -22,11 +24,11 @@ const IN_FULL: usize = 3;
 /// lists the page stays below 5 MB at 10 000 cases.
 const ROOM: (usize, usize) = (2_000_000, 1_000_000);
 /// Points of a sweep listed for one id.
-const LISTED: usize = 120;
+pub const LISTED: usize = 120;
 /// DUTs whose facts are shown.
 const DUTS: usize = 16;
 /// Characters of a name shown in headings and facts.
-const NAME: usize = 120;
+pub const NAME: usize = 120;
 
 /// The report of a run.
 pub fn render(run: &Run) -> String {
@@ -53,7 +55,8 @@ pub fn render(run: &Run) -> String {
                     (incomplete(run, &summary))
                     (facts(run, &summary))
                     (differing(run, &summary))
-                    (matrix(run, &summary))
+                    (evidence_html::section(run))
+                    (matrix_html::section(run, &summary))
                     (coverage(run, &summary))
                     (tolerances(run, &summary))
                     (attention(run, &room))
@@ -171,7 +174,7 @@ fn facts_of(dut: &DutInfo) -> Markup {
 }
 
 /// A role of a record in the standard's words.
-fn role(role: &str) -> String {
+pub fn role(role: &str) -> String {
     match role {
         "device" => "FS-Device".to_owned(),
         "master" => "FS-Master".to_owned(),
@@ -211,64 +214,8 @@ fn differing(run: &Run, summary: &Summary) -> Markup {
     }
 }
 
-/// What became of each cell of the error matrix: its cases with the verdicts they came to, or why it has none.
-fn matrix(run: &Run, summary: &Summary) -> Markup {
-    html! {
-        @if !run.header.matrix.is_empty() {
-            h2 { "Error matrix" }
-            p { "Every error class of Table 27 in every waiting state, on the way to the DUT and on the way from it." }
-            @for part in &run.header.matrix { (matrix_of(part, run, summary)) }
-        }
-    }
-}
-
-fn matrix_of(part: &MatrixInfo, run: &Run, summary: &Summary) -> Markup {
-    let mut reasons: Vec<&str> = Vec::new();
-    let nones = part.rows.iter().flat_map(|row| &row.cells).map(|cell| cell.none.as_str());
-    nones.filter(|none| !none.is_empty()).for_each(|none| {
-        if !reasons.contains(&none) {
-            reasons.push(none);
-        }
-    });
-    let name = role(&part.role);
-    let mut ran: BTreeMap<&str, Vec<&CaseRecord>> = BTreeMap::new();
-    let of_role = run.cases.iter().filter(|case| case.role == part.role);
-    of_role.for_each(|case| ran.entry(&case.id).or_default().push(case));
-    html! {
-        h3 { (name) (together(Side::of(&part.role), summary)) }
-        div.scroll tabindex="0" role="group" aria-label={ "Error matrix of the " (name) } {
-            table.matrix {
-                thead { tr { th scope="col" { "Error" } @for column in part.columns.iter().take(LISTED) { th scope="col" { (short(column, NAME)) } } } }
-                @for row in part.rows.iter().take(LISTED) {
-                    tr {
-                        th scope="row" { (short(&row.class, NAME)) }
-                        @for cell in row.cells.iter().take(LISTED) { td { (matrix_cell(cell, &ran, &reasons)) } }
-                    }
-                }
-            }
-        }
-        @if !reasons.is_empty() { ol.soft { @for reason in reasons.iter().take(LISTED) { li { (short(reason, 2 * NAME)) } } } }
-    }
-}
-
-fn matrix_cell(cell: &MatrixCell, ran: &BTreeMap<&str, Vec<&CaseRecord>>, reasons: &[&str]) -> Markup {
-    html! {
-        @for id in cell.cases.iter().take(LISTED) {
-            @let counts = counted(ran.get(id.as_str()).into_iter().flatten().copied());
-            div {
-                (short(id, NAME))
-                @if counts.is_empty() { " " span.soft { "not run" } }
-                @for ((said, class), count) in &counts { " " span class=(class) { (said) " × " (count) } }
-            }
-        }
-        @if let Some(number) = reasons.iter().position(|reason| *reason == cell.none) {
-            span.soft { "none, see " (number + 1) }
-        }
-    }
-}
-
 /// Verdicts in words with their classes, and how often each came.
-fn counted<'c>(cases: impl Iterator<Item = &'c CaseRecord>) -> BTreeMap<(&'static str, &'static str), usize> {
+pub fn counted<'c>(cases: impl Iterator<Item = &'c CaseRecord>) -> BTreeMap<(&'static str, &'static str), usize> {
     let mut counts = BTreeMap::new();
     cases.for_each(|case| *counts.entry(word(case)).or_default() += 1);
     counts
@@ -301,7 +248,7 @@ fn coverage(run: &Run, summary: &Summary) -> Markup {
 }
 
 /// Says that counts are over several DUTs.
-fn together(side: Side, summary: &Summary) -> Markup {
+pub fn together(side: Side, summary: &Summary) -> Markup {
     let duts = summary.duts.iter().filter(|dut| Side::of(&dut.role) == side).count();
     html! { @if duts > 1 { span.soft { " · " (duts) " DUTs together" } } }
 }

@@ -47,6 +47,9 @@ pub struct Header {
     /// The error matrix, one part a role, when cases of it were planned.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub matrix: Vec<MatrixInfo>,
+    /// What Annex I of v1.1 asks for, when the run was made to support it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub evidence: Option<Evidence>,
 }
 
 /// What a machine can be led through. Transitions and steps that follow each other are written one behind the other: `T24 T22`.
@@ -133,6 +136,36 @@ pub struct MatrixCell {
     /// Why there is none; empty where there are cases.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub none: String,
+}
+
+/// What Annex I of v1.1 asks for, with what supports it.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Evidence {
+    /// Its items.
+    pub items: Vec<EvidenceItem>,
+    /// Statements of both editions by what is done about them: `tested`, `bench`, ...
+    pub classes: BTreeMap<String, usize>,
+}
+
+/// An item of Annex I.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct EvidenceItem {
+    /// Clause: `I.4`.
+    pub clause: String,
+    /// What it asks for.
+    pub asks: String,
+    /// Suites and groups whose cases support it, each with its suites.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cases: Vec<(String, Vec<String>)>,
+    /// Parts of the report that support it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub figures: Vec<String>,
+    /// Documents that support it, with what each says.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub documents: Vec<(String, String)>,
+    /// What has to come from elsewhere.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub gaps: Vec<String>,
 }
 
 /// The device under test, in its own words and the words of the command line. Hostile text: escape it.

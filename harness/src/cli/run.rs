@@ -1,6 +1,7 @@
 //! `fsct run`: judges a DUT and leaves the record and the reports.
 
 use super::{Cases, RIG, USAGE, bench, colour, fail, print, show};
+use crate::annex_i;
 use crate::campaign::{Bench, Judges, Run, dut_info};
 use crate::coverage::Coverage;
 use crate::library::Library;
@@ -128,7 +129,7 @@ fn execute(args: &Args) -> Result<u8, u8> {
             }
             selection.suites.push(name);
         } else if library.names().any(|known| known == *suite) {
-            selection.suites.push(suite.clone());
+            selection.suites.extend(library.members(suite));
         } else {
             let help = suggestion(suite, library.names());
             return Err(fail(USAGE, format!("there is no suite `{suite}`; {help}")));
@@ -186,6 +187,11 @@ fn execute(args: &Args) -> Result<u8, u8> {
             .map(Coverage::info)
             .collect(),
         matrix: matrix(&library, &plans),
+        evidence: library
+            .annex_i
+            .as_ref()
+            .filter(|_| args.suites.iter().any(|suite| suite == annex_i::NAME))
+            .map(|annex| annex.evidence(&library.ledger, |name| library.members(name))),
     };
     let interrupted = Arc::new(AtomicBool::new(false));
     for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {

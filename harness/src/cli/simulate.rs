@@ -26,6 +26,9 @@ pub struct Args {
     /// Ports of an FS-Master
     #[arg(long, value_name = "N")]
     ports: Option<u8>,
+    /// Width of the Ready pulse of an FS-Device in microseconds
+    #[arg(long, value_name = "US")]
+    pulse_us: Option<u32>,
     /// Write the lines of port 1 to this file, for `fsct capture` or a viewer
     #[arg(long, value_name = "FILE")]
     vcd: Option<PathBuf>,
@@ -44,6 +47,7 @@ pub fn run(args: &Args) -> u8 {
     option("mutant", args.mutant.clone());
     option("latency", args.latency.map(|latency| latency.to_string()));
     option("clock", args.clock.clone());
+    option("pulse_us", args.pulse_us.map(|us| us.to_string()));
     option("ports", args.ports.map(|ports| ports.to_string()));
     match args.role {
         Role::Device => match Options::from_query(&query) {

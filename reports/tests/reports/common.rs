@@ -18,6 +18,7 @@ pub fn header(planned: usize) -> Header {
         tolerances: BTreeMap::from([("A19".into(), "T29 read sequentially (tolerated)".into())]),
         machines: Vec::new(),
         matrix: Vec::new(),
+        evidence: None,
     }
 }
 

@@ -30,6 +30,30 @@ fn the_chart_and_the_story_of_an_fs_master_look_like_this() {
 }
 
 #[test]
+fn items_of_annex_i_show_what_supports_them_and_what_does_not() {
+    let mut run = run(vec![passed(1), failed(2)]);
+    let supported = EvidenceItem {
+        clause: "I.2".into(),
+        asks: "The layer is right".into(),
+        cases: vec![
+            ("scl-device".into(), vec!["device-startup".into()]),
+            ("timing".into(), vec!["device-lines".into()]),
+        ],
+        documents: vec![("docs/assurance.md".into(), HOSTILE.into())],
+        ..EvidenceItem::default()
+    };
+    let open = EvidenceItem { clause: "I.4".into(), gaps: vec!["The calculation".into()], ..EvidenceItem::default() };
+    let classes = [("tested".to_owned(), 3), ("open".to_owned(), 1)].into();
+    run.header.evidence = Some(Evidence { items: vec![supported, open], classes });
+    let folder = Folder::with("annex-i", &run);
+    render(&folder.0).expect("the record is sound");
+    let html = folder.text("report.html");
+    let table = html.split("<h2>Annex I</h2>").nth(1).and_then(|rest| rest.split("<h2>").next()).expect("a section");
+    assert_snapshot!("annex_i", table.replace("><", ">\n<"));
+    assert!(!table.contains("<script"));
+}
+
+#[test]
 fn text_from_a_dut_is_escaped_wherever_it_is_shown() {
     let mut run = run(vec![hostile(1)]);
     let dut = DutInfo { profile: HOSTILE.into(), vendor: HOSTILE.into(), product: HOSTILE.into(), ..curtain() };
