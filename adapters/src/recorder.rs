@@ -1,7 +1,9 @@
 //! A wrapper that keeps what crosses the boundary to a DUT: flat entries in order, equal exchanges counted, and of very
 //! many the first and the last.
 
-use crate::{Description, Dut, DutError, Observation, Octets, Seen, Service, SmiRequest, SmiResult, Stimulus, Variant};
+use crate::{
+    Description, Dut, DutError, MADE_UP, Observation, Octets, Seen, Service, SmiRequest, SmiResult, Stimulus, Variant,
+};
 use std::collections::VecDeque;
 
 /// How many entries are kept; what stands between head and tail is counted and forgotten.
@@ -187,6 +189,8 @@ impl<D: Dut> Recorder<D> {
         let served = !observed.iter().any(|observation| observation.seen == Seen::Unsupported);
         match stimulus {
             Stimulus::Read { .. } | Stimulus::Write { .. } | Stimulus::Smi(_) => {}
+            // Asked again and again while time passes on a real clock: it serves nobody and only brings what has happened.
+            Stimulus::Other { kind: MADE_UP, .. } => self.counted(self.now, Happened::Unserved(stimulus.clone())),
             _ if !served => self.push(self.now, Happened::Unserved(stimulus.clone())),
             Stimulus::Configure(variant) => self.push(self.now, Happened::Configure(*variant)),
             Stimulus::Power(on) => self.push(self.now, Happened::Power(*on)),
@@ -210,7 +214,7 @@ impl<D: Dut> Recorder<D> {
         let answer = match &observation.seen {
             Seen::Image { port, octets: got } => {
                 let sent = if let Stimulus::Exchange { octets, .. } = stimulus { *octets } else { None };
-                return self.exchange(at, Happened::Exchange { port: *port, sent, got: *got });
+                return self.counted(at, Happened::Exchange { port: *port, sent, got: *got });
             }
             Seen::Service { port, service, value } => {
                 return self.push(at, Happened::Service { port: *port, service: *service, value: *value });
@@ -239,7 +243,8 @@ impl<D: Dut> Recorder<D> {
         }
     }
 
-    fn exchange(&mut self, at: u64, what: Happened) {
+    /// What is the same as the entry before adds to its count.
+    fn counted(&mut self, at: u64, what: Happened) {
         match self.recording.last_mut() {
             Some(last) if last.what == what => last.count += 1,
             _ => self.push(at, what),

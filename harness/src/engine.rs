@@ -158,6 +158,9 @@ impl<'s, 'd> Engine<'s, 'd> {
                 self.outcome.execution = Execution::DutError;
                 self.reason(Verdict::Inconclusive, "dut/unserved", "", "everything the DUT says it serves", &what);
             }
+            Stop::Slipped(expected, observed) => {
+                self.reason(Verdict::Inconclusive, "bench/slipped", "", &expected, &observed);
+            }
             Stop::Interrupted => {
                 self.outcome.execution = Execution::Aborted;
                 self.reason(

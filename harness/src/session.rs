@@ -36,6 +36,8 @@ pub enum Stop {
     Dut(DutError),
     /// The DUT does not serve what the case needs.
     Unserved(String),
+    /// On a real clock the tester came so late that nobody has to react as the case goes on: what was to be, and what was.
+    Slipped(String, String),
     /// The user asked to stop.
     Interrupted,
 }

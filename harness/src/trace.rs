@@ -1,7 +1,7 @@
 //! What the record says of a case: the recording of what crossed the boundary, with the transitions the oracle saw and the
 //! tester's notes beside it.
 
-use fsct_adapters::{Answer, Happened, Line, Octets, Recording, Response, Seen, Service, Stimulus};
+use fsct_adapters::{Answer, Happened, Line, MADE_UP, Octets, Recording, Response, Seen, Service, Stimulus};
 use fsct_reports::record::{Entry, What};
 use std::collections::VecDeque;
 
@@ -160,6 +160,7 @@ pub fn name(stimulus: &Stimulus) -> String {
         }
         Stimulus::Drive { line, level, .. } => format!("{line} driven {}", if *level { "high" } else { "low" }),
         Stimulus::Smi(request) => request.service.to_string(),
+        Stimulus::Other { kind: MADE_UP, .. } => "a look at what has happened".to_owned(),
         Stimulus::Other { kind, .. } => format!("stimulus kind {kind}"),
     }
 }

@@ -74,7 +74,16 @@ impl<'s> Engine<'s, '_> {
         });
         if ossde.is_some_and(|least| after_ns + 2 * uncertainty_ns >= least) {
             // On a real clock the tester may be that late: OSSDe operation may have begun, and nobody has to answer any more.
-            self.session.slipped |= !answered;
+            if !answered {
+                let time = fsct_reports::measurement::time;
+                return Err(Stop::Slipped(
+                    format!(
+                        "a wake-up request before OSSDe operation may begin, {} after the Ready pulse",
+                        time(ossde.unwrap_or(0))
+                    ),
+                    format!("it was {} after it, ± {}, and was not answered", time(after_ns), time(2 * uncertainty_ns)),
+                ));
+            }
         } else {
             self.session.link_mut().lines.woken(woken_at, after_ns, answered, uncertainty_ns);
         }

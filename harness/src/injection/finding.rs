@@ -52,6 +52,7 @@ impl From<Stop> for Halt {
             )),
             Stop::Dut(error) => Halt::Bench(error.to_string()),
             Stop::Unserved(what) => Halt::Bench(what),
+            Stop::Slipped(expected, observed) => Halt::Inconclusive(format!("{observed} instead of {expected}")),
             Stop::Interrupted => Halt::Interrupted,
         }
     }

@@ -23,14 +23,24 @@ pub fn run(library: &Library, selection: &Selection, make: impl Fn() -> Box<dyn 
 }
 
 /// The same with another profile.
+#[allow(dead_code, reason = "not every test takes fresh DUTs")]
 pub fn run_with(
     library: &Library,
     selection: &Selection,
     profile: &str,
     make: impl Fn() -> Box<dyn Dut>,
 ) -> Vec<CaseRecord> {
+    run_on(library, selection, profile, || Bench::greet(make()))
+}
+
+/// The same on benches that are more than greeted.
+pub fn run_on(
+    library: &Library,
+    selection: &Selection,
+    profile: &str,
+    connect: impl Fn() -> Result<Bench, DutError>,
+) -> Vec<CaseRecord> {
     let profile = &library.profiles[profile];
-    let connect = || -> Result<Bench, DutError> { Bench::greet(make()) };
     let bench = connect();
     let description = match &bench {
         Ok(bench) => bench.description.clone(),
