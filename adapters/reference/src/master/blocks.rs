@@ -205,8 +205,7 @@ impl PortConfig {
             (_, Edition::Iec2022) => matches!(iq_behavior, 0 | 1 | 5),
         };
         let validated = matches!(self.port_mode, IOL_MANUAL | SAFETYCOM | MIXEDSAFETYCOM);
-        let vendor = self.vendor_id != 0 || mutant == Some(MasterMutant::VendorId0IsWildcard);
-        let ids = !validated || vendor && (1..=0x00FF_FFFF).contains(&self.device_id);
+        let ids = !validated || self.vendor_id != 0 && (1..=0x00FF_FFFF).contains(&self.device_id);
         let backup = !validated || self.validation <= 4;
         let safety = self.is_safety();
         let (time_to_ready, min_shut_down) = times;

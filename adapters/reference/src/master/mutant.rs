@@ -188,8 +188,6 @@ catalogue! {
             "The SCL starts anew after loss of communication and wants no acknowledgment."
         VendorIdNotCompared "vendor-id-not-compared", "10.3.4":
             "A Device of another VendorID is taken."
-        VendorId0IsWildcard "vendor-id-0-is-wildcard", "10.3.4":
-            "VendorID 0 in the configuration goes with every Device."
         CycleTimeNotCompared "cycle-time-not-compared", "10.3.3 (v1.1), 10.3.4 (iec2022)":
             "A PortCycleTime below the MinCycleTime of the Device is taken."
         UnknownPortModeIsSafetycom "unknown-port-mode-is-safetycom", "10.3.4":

@@ -376,8 +376,7 @@ impl PortUnit {
         let Some(config) = &self.config else { return };
         let manual = config.port_mode != port_mode::IOL_AUTOSTART;
         let validated = manual && (1..=4).contains(&config.validation);
-        let wildcard = config.vendor_id == 0 && self.is(MasterMutant::VendorId0IsWildcard);
-        let vendor_compared = !wildcard && !self.is(MasterMutant::VendorIdNotCompared);
+        let vendor_compared = !self.is(MasterMutant::VendorIdNotCompared);
         let other_vendor = vendor_compared && config.vendor_id != device.vendor_id;
         let other = validated && (other_vendor || config.device_id != device.device_id);
         let cycle_compared = manual && config.cycle_time != 0 && !self.is(MasterMutant::CycleTimeNotCompared);
