@@ -644,3 +644,10 @@ fn the_sound_files_are_sound_and_tell_their_edition() {
         assert_eq!((report.edition, report.is_sound(), rules.as_slice()), (edition, true, given(edition)));
     }
 }
+
+#[test]
+fn the_iodd_of_the_reference_device_is_sound() {
+    let report = check(include_bytes!("reference-device.xml"), None).expect("readable");
+    assert_eq!(report.findings, []);
+    assert_eq!((report.declaration.pd_in, report.declaration.pd_out), (Some(1), Some(0)));
+}
