@@ -92,7 +92,7 @@ fn facts(declared: &Declaration) -> Vec<(&'static str, String)> {
     let tens =
         |value: Option<u16>| value.map_or("not declared".to_owned(), |value| format!("{} ms", u32::from(value) * 10));
     let octets = |value: Option<u8>| value.map_or("not readable".to_owned(), |value| format!("{value} octets"));
-    let range = declared.watchdog_range.map_or("no range".to_owned(), |(least, most)| format!("{least} to {most} ms"));
+    let range = declared.watchdog_range.map_or("no valid range".to_owned(), |(least, most)| format!("{least} to {most} ms"));
     let mode = declared.mode.map_or("not declared".to_owned(), |mode| format!("{} ({mode})", mode.code()));
     let mut facts = vec![
         ("FSP_ProtMode", mode),
