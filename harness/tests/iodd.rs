@@ -61,6 +61,10 @@ fn text_of_the_file_reaches_no_terminal_as_it_is() {
         folder.file("hostile.xml", &IEC.replacen("id=\"P_ProcessData\"", "id=\"&#x9b;2J&#xA;forged: sound\"", 1));
     let run = fsct(&["iodd", &file]);
     assert_eq!(run.code, 1, "{run:?}");
+    let json = fsct(&["iodd", &file, "--json"]).out;
+    assert!(json.is_ascii(), "{json}");
+    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    assert_eq!(json["findings"][0]["found"], "id `\u{9b}2J\nforged: sound`");
     assert!(!run.out.contains('\u{9b}') && !run.out.lines().any(|line| line.starts_with("forged")), "{}", run.out);
 }
 

@@ -33,12 +33,24 @@ pub fn run(args: &Args) -> u8 {
         Err(reason) => return fail(USAGE, format!("{file}: {reason}")),
     };
     if args.json {
-        print(json(&file, &report));
+        print(ascii(&json(&file, &report).to_string()));
     } else {
         report.findings.iter().for_each(|finding| print(visible_lines(&block(&file, finding))));
         print(visible_lines(&summary(&file, &report, args.octets)));
     }
     if report.is_sound() { 0 } else { 1 }
+}
+
+/// JSON without a character that could move a cursor: beyond ASCII, which stands in strings alone, each is escaped.
+fn ascii(json: &str) -> String {
+    let mut out = String::with_capacity(json.len());
+    for c in json.chars() {
+        match c.is_ascii() {
+            true => out.push(c),
+            false => c.encode_utf16(&mut [0; 2]).iter().for_each(|unit| out += &format!("\\u{unit:04x}")),
+        }
+    }
+    out
 }
 
 /// What is left when the text of the file cannot move a cursor: our own line breaks alone.
@@ -92,7 +104,8 @@ fn facts(declared: &Declaration) -> Vec<(&'static str, String)> {
     let tens =
         |value: Option<u16>| value.map_or("not declared".to_owned(), |value| format!("{} ms", u32::from(value) * 10));
     let octets = |value: Option<u8>| value.map_or("not readable".to_owned(), |value| format!("{value} octets"));
-    let range = declared.watchdog_range.map_or("no valid range".to_owned(), |(least, most)| format!("{least} to {most} ms"));
+    let range =
+        declared.watchdog_range.map_or("no valid range".to_owned(), |(least, most)| format!("{least} to {most} ms"));
     let mode = declared.mode.map_or("not declared".to_owned(), |mode| format!("{} ({mode})", mode.code()));
     let mut facts = vec![
         ("FSP_ProtMode", mode),
