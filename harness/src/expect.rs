@@ -2,12 +2,14 @@
 
 mod port;
 
-use crate::case::model::{Expectation, Expected, Key};
+use crate::case::model::{Declared, Expectation, Expected, Key};
 use crate::session::{Reply, Session};
 use crate::tester::Tester;
 use crate::trace::hex;
 use fsct_adapters::{Octets, Pco, Role};
+use fsct_iodd::Declaration;
 use fsct_protocol::Edition;
+use fsct_protocol::fsp::Protocol;
 use fsct_protocol::spdu::{View, succ};
 use fsct_reports::record::Check;
 
@@ -49,7 +51,7 @@ pub fn judge(expectation: &Expectation, before: &Before, session: &Session<'_>, 
         Key::PdinM | Key::SdsetS | Key::ChFAckReqS | Key::FaultsS | Key::Qualifier => {
             gateway(expectation, before, session, tester)?
         }
-        Key::Reply => reply(expectation, session),
+        Key::Reply => reply(expectation, session)?,
         Key::Event => event(expectation, session),
         Key::Mode | Key::PortPower | Key::Cq | Key::Iq | Key::WakeUp | Key::Record => {
             port::of_port(expectation, session)
@@ -282,24 +284,61 @@ fn service(expectation: &Expectation, before: &Before, session: &Session<'_>, te
     Some(compare(expected, observed))
 }
 
-fn reply(expectation: &Expectation, session: &Session<'_>) -> Judged {
+fn reply(expectation: &Expectation, session: &Session<'_>) -> Option<Judged> {
     let observed = session.replied();
     let expected = match &expectation.value {
         Expected::Written => "written".to_owned(),
         Expected::Refused => {
             let met = matches!(session.reply, Some(Reply::Refused(_)));
-            return ("refused".to_owned(), observed, met);
+            return Some(("refused".to_owned(), observed, met));
         }
         Expected::Octets(octets) => hex(octets),
         Expected::Configured => hex(&session.profile.authenticity().to_octets()),
         Expected::Count(count) => {
             let met = matches!(&session.reply, Some(Reply::Value(octets)) if octets.len() == *count);
-            return (format!("{count} octets read"), observed, met);
+            return Some((format!("{count} octets read"), observed, met));
+        }
+        Expected::Declared(item) => {
+            let octets = match &session.reply {
+                Some(Reply::Value(octets)) => octets.as_slice(),
+                _ => &[],
+            };
+            let (expected, met) = declared(*item, octets, session.profile.declaration.as_ref()?)?;
+            return Some((expected, observed, met));
         }
         _ => format!("refused 0x{:04X}", number(expectation)),
     };
     let met = expected == observed;
-    (expected, observed, met)
+    Some((expected, observed, met))
+}
+
+/// What the IODD declares of an object, and whether the octets read say the same. `None`: nothing is declared.
+fn declared(item: Declared, octets: &[u8], declaration: &Declaration) -> Option<(String, bool)> {
+    let value = match item {
+        Declared::Protocol => {
+            let (mode, io_struct_crc) = (declaration.mode?.code(), declaration.io_struct_crc?);
+            let expected = format!(
+                "01 {mode:02X} .. .. {} and six octets more, as the IODD declares",
+                hex(&io_struct_crc.to_be_bytes())
+            );
+            let read = Protocol::fields(octets).ok();
+            let met =
+                read.is_some_and(|read| (read.version, read.mode, read.io_struct_crc) == (1, mode, io_struct_crc));
+            return Some((expected, met));
+        }
+        Declared::ParamDescCrc => {
+            let value = declaration.param_desc_crc?;
+            match declaration.edition {
+                Edition::V1_1 => u16::try_from(value).ok()?.to_be_bytes().to_vec(),
+                Edition::Iec2022 => value.to_be_bytes().to_vec(),
+            }
+        }
+        Declared::TimeToReady => declaration.time_to_ready?.to_be_bytes().to_vec(),
+        Declared::MinShutDownTime => declaration.min_shut_down_time?.to_be_bytes().to_vec(),
+        Declared::Wcdt => declaration.wcdt?.to_be_bytes().to_vec(),
+        Declared::Ofdt => declaration.ofdt?.to_be_bytes().to_vec(),
+    };
+    Some((format!("{}, as the IODD declares", hex(&value)), value == octets))
 }
 
 #[cfg(test)]

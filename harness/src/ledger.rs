@@ -15,7 +15,7 @@ use std::sync::Arc;
 pub enum Class {
     /// At least one case judges it.
     Tested,
-    /// The oracle judges it at every exchange.
+    /// The oracle judges it at every exchange, `fsct iodd` in every IODD.
     Implicit,
     /// Needs instruments.
     Bench,

@@ -5,6 +5,7 @@ use crate::problem::{Problem, Source};
 use crate::tree::Fields;
 use crate::yaml;
 use fsct_adapters::{ClockKind, Description, Role};
+use fsct_iodd::Declaration;
 use fsct_protocol::ProtMode;
 use fsct_protocol::crc::Reading;
 use fsct_protocol::fsp::{Authenticity, INDEX_AUTHENTICITY, INDEX_PROTOCOL, INDEX_VERIFY, Protocol, VerifyRecord};
@@ -73,6 +74,8 @@ pub struct Profile {
     pub parameterization: Parameterization,
     /// Features of the product that some requirements are limited to, such as `ossde`.
     pub features: Vec<String>,
+    /// What the product's IODD declares, when one was given.
+    pub declaration: Option<Declaration>,
     /// Tolerances the profile adds.
     pub tolerate: Mask,
     /// Tolerances the profile takes away.
@@ -84,6 +87,9 @@ const EXCHANGES: u64 = 2_000;
 
 /// The feature of a profile that tells an FSP_TechParCRC other than 0.
 const ARMED: &str = "armed";
+
+/// The feature of a profile that was completed from an IODD.
+const IODD: &str = "iodd";
 
 /// Name of the profile a DUT is judged by when none is given.
 pub fn default_profile(role: Role) -> String {
@@ -183,6 +189,7 @@ impl Profile {
                 reading,
                 parameterization,
                 features,
+                declaration: None,
                 tolerate,
                 strict,
             }),
@@ -200,6 +207,20 @@ impl Profile {
             .max(least_us * 1_000)
             .min(watchdog_us * 1_000 / 5 * 2 / (self.answer_latency + 1));
         Profile { watchdog_ms, master_cycle_time_ns, ..self.clone() }
+    }
+
+    /// This profile with what the product's IODD declares: its times in place of those here.
+    pub fn with_iodd(&self, declaration: Declaration) -> Profile {
+        let ms = |tens: Option<u16>, own: u64| tens.map_or(own, |tens| u64::from(tens) * 10);
+        let mut features = self.features.clone();
+        features.push(IODD.to_owned());
+        Profile {
+            time_to_ready_ms: ms(declaration.time_to_ready, self.time_to_ready_ms),
+            min_shut_down_ms: ms(declaration.min_shut_down_time, self.min_shut_down_ms),
+            features,
+            declaration: Some(declaration),
+            ..self.clone()
+        }
     }
 
     /// FSP_Watchdog in nanoseconds.

@@ -5,7 +5,7 @@ mod parameters;
 mod port;
 mod spdu;
 
-pub use expect::{Expectation, Expected, Key, Outcome};
+pub use expect::{Declared, Expectation, Expected, Key, Outcome};
 use fsct_adapters::{Line, Service};
 use fsct_lines::{Claim, Quantity};
 pub use parameters::{Parameterize, RecordField};

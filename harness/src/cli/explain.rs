@@ -1,16 +1,18 @@
-//! `fsct explain ID`: what a case, a requirement, a tolerance or a limit says, and what hangs on it; `fsct explain --matrix`.
+//! `fsct explain ID`: what a case, a requirement, a tolerance, a limit or a rule for IODDs says, and what hangs on it;
+//! `fsct explain --matrix`.
 
 use super::{Cases, USAGE, fail, print};
 use crate::library::Library;
 use crate::oracle::Tolerances;
 use crate::problem::suggestion;
+use fsct_iodd::{Reach, Severity};
 use fsct_lines::{Limit, Outside, Row, Subject, Unit};
 use fsct_protocol::Edition;
 
 /// Arguments of `fsct explain`.
 #[derive(clap::Args, Debug)]
 pub struct Args {
-    /// FSD-0231, R-11.5.3-09, A19 or t_RP
+    /// FSD-0231, R-11.5.3-09, A19, t_RP or IODD-24
     #[arg(required_unless_present = "matrix")]
     id: Option<String>,
     /// Print the error matrix: error class x state x direction, with the case that shows it
@@ -35,13 +37,14 @@ pub fn run(args: &Args) -> u8 {
             None => fail(USAGE, "these cases come without an error matrix"),
         };
     };
-    if case(&library, id) || requirement(&library, id) || tolerance(&library, id) || limit(&library, id) {
+    if case(&library, id) || requirement(&library, id) || tolerance(&library, id) || limit(&library, id) || iodd(id) {
         return 0;
     }
     let symbols = library.limits.limits.iter().map(|limit| limit.symbol.as_str());
+    let rules = fsct_iodd::RULES.iter().map(|rule| rule.id);
     let known: Vec<&str> =
-        library.cases().map(|case| case.id.as_str()).chain(library.ledger.ids()).chain(symbols).collect();
-    fail(USAGE, format!("there is no case, requirement, tolerance or limit `{id}`; {}", suggestion(id, known)))
+        library.cases().map(|case| case.id.as_str()).chain(library.ledger.ids()).chain(symbols).chain(rules).collect();
+    fail(USAGE, format!("there is no case, requirement, tolerance, limit or rule `{id}`; {}", suggestion(id, known)))
 }
 
 fn case(library: &Library, id: &str) -> bool {
@@ -123,6 +126,20 @@ fn limit(library: &Library, symbol: &str) -> bool {
             print(format!("{id} ({}, {}): {}", clauses(record), record.level.name(), record.text));
         }
     }
+    true
+}
+
+fn iodd(id: &str) -> bool {
+    let Some(rule) = fsct_iodd::rule(id) else { return false };
+    print(format!("{id}  {} ({})", rule.text, rule.clause));
+    for edition in Edition::ALL {
+        print(format!("{edition}: {}", rule.severity(edition).map_or("no such rule", Severity::name)));
+    }
+    print(match rule.reach {
+        Reach::File => "checked by fsct iodd FILE".to_owned(),
+        Reach::Others(why) => format!("follows: {why}"),
+        Reach::Not(why) => format!("not checked: {why}"),
+    });
     true
 }
 

@@ -11,6 +11,7 @@ mod doctor;
 mod explain;
 mod gauntlet;
 mod host;
+mod iodd;
 mod list;
 mod report;
 mod run;
@@ -57,11 +58,13 @@ enum Command {
     Campaign(campaign::Args),
     /// Judge the line cases by a recording: VCD, sigrok .sr, CSV of sigrok or Saleae Logic
     Capture(capture::Args),
+    /// Judge the IODD of an FS-Device by the rules of Annex E, and say what it declares
+    Iodd(iodd::Args),
     /// List the cases there are
     List(list::Args),
     /// Check cases, ledger and profiles without a DUT
     Check(check::Args),
-    /// Explain a case, a requirement or a tolerance
+    /// Explain a case, a requirement, a tolerance, a limit or a rule for IODDs
     Explain(explain::Args),
     /// Serve the reference FS-Device or FS-Master on a socket, a pseudo-terminal, or stdin and stdout
     Simulate(simulate::Args),
@@ -93,6 +96,7 @@ pub fn main() -> ExitCode {
         Command::Doctor(args) => doctor::run(&args),
         Command::Campaign(args) => campaign::run(&args),
         Command::Capture(args) => capture::run(&args),
+        Command::Iodd(args) => iodd::run(&args),
         Command::List(args) => list::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Explain(args) => explain::run(&args),

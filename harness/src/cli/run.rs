@@ -11,7 +11,8 @@ use crate::plan::{Plan, Selection, plan, unreached};
 use crate::problem::suggestion;
 use crate::profile::{Profile, default_profile};
 use crate::yaml;
-use fsct_adapters::{Address, Description, DutError, Role};
+use fsct_adapters::{Address, Description, DutError, Offer, Role, Variant};
+use fsct_iodd::Declaration;
 use fsct_protocol::Edition;
 use fsct_reports::record::{CaseRecord, DutInfo, Execution, Footer, Header, MatrixInfo, SCHEMA, Verdict};
 use fsct_reports::{Asked, Journal, Summary, visible};
@@ -40,6 +41,9 @@ pub struct Args {
     /// reference-master
     #[arg(long, value_name = "PROFILE")]
     profile: Vec<String>,
+    /// IODD of the FS-Device: it is judged as what the file declares, and by whether it is what the file declares
+    #[arg(long, value_name = "FILE")]
+    iodd: Option<PathBuf>,
     /// Only this edition: v1.1 or iec2022
     #[arg(long)]
     edition: Option<Edition>,
@@ -135,7 +139,13 @@ fn execute(args: &Args) -> Result<u8, u8> {
             return Err(fail(USAGE, format!("there is no suite `{suite}`; {help}")));
         }
     }
-    let profiles = given_profiles(&args.profile, &library)?;
+    let mut profiles = given_profiles(&args.profile, &library)?;
+    let declaration = args.iodd.as_deref().map(|file| declared(file, args.edition)).transpose()?;
+    if let Some(declaration) = &declaration {
+        let own = candidate_profile(Role::Device, &profiles, &library)?.with_iodd(declaration.clone());
+        profiles.retain(|profile| profile.role != Role::Device);
+        profiles.push(own);
+    }
     let urls: Vec<&str> = match args.dut.as_slice() {
         [] => {
             let chosen = |url: &&str| {
@@ -147,7 +157,11 @@ fn execute(args: &Args) -> Result<u8, u8> {
     };
     let mut candidates = Vec::new();
     for url in urls {
-        candidates.push(candidate(args, url, &profiles, &library)?);
+        let mut found = candidate(args, url, &profiles, &library)?;
+        if let Some(declaration) = declaration.as_ref().filter(|_| found.description.role == Role::Device) {
+            found.description.offers = as_declared(&found.description.offers, declaration)?;
+        }
+        candidates.push(found);
     }
     if let Some(unused) =
         profiles.iter().find(|profile| candidates.iter().all(|other| other.profile.role != profile.role))
@@ -240,6 +254,43 @@ fn execute(args: &Args) -> Result<u8, u8> {
     Ok(summary.exit_code())
 }
 
+/// What a sound IODD declares.
+fn declared(file: &Path, edition: Option<Edition>) -> Result<Declaration, u8> {
+    let name = file.display();
+    let octets = fsct_iodd::octets_of(file).map_err(|why| fail(USAGE, format!("{name}: {why}")))?;
+    let report = fsct_iodd::check(&octets, edition).map_err(|why| fail(USAGE, format!("{name}: {why}")))?;
+    match report.is_sound() {
+        true => Ok(report.declaration),
+        false => Err(fail(
+            USAGE,
+            format!("{name} is not sound, so no product can be held against it; see `fsct iodd {name}`"),
+        )),
+    }
+}
+
+/// What a DUT offers, narrowed to the one product its IODD declares.
+fn as_declared(offers: &[Offer], declaration: &Declaration) -> Result<Vec<Offer>, u8> {
+    let Declaration { edition, mode, pd_in, pd_out, .. } = declaration;
+    let (Some(mode), Some(pd_in), Some(pd_out)) = (*mode, *pd_in, *pd_out) else {
+        return Err(fail(
+            USAGE,
+            "the IODD does not declare FSP_ProtMode and the length of the safety data; see `fsct iodd`",
+        ));
+    };
+    let variant = Variant { edition: *edition, mode, pd_out, pd_in };
+    let one = Offer { edition: *edition, mode, pd_out: (pd_out, pd_out), pd_in: (pd_in, pd_in) };
+    match offers.iter().any(|offer| offer.covers(variant)) {
+        true => Ok(vec![one]),
+        false => Err(fail(
+            USAGE,
+            format!(
+                "the IODD declares {edition} {mode} with {pd_in} octets in and {pd_out} out, which the DUT does not offer: is it \
+                 that of another product?"
+            ),
+        )),
+    }
+}
+
 /// The error matrix for the roles whose cases of it are planned.
 fn matrix(library: &Library, plans: &[Plan<'_>]) -> Vec<MatrixInfo> {
     let cases = plans.iter().flat_map(|plan| &plan.cases).map(|planned| planned.case);
@@ -323,6 +374,9 @@ fn command(args: &Args, url: &str, profile: &Profile) -> String {
         // As it was given: a file is not called by the name inside it.
         let given = args.profile.iter().find(|given| given.as_str() == profile.name || args.profile.len() == 1);
         command += &format!(" --profile '{}'", given.unwrap_or(&profile.name));
+    }
+    if let Some(file) = args.iodd.as_ref().filter(|_| profile.role == Role::Device) {
+        command += &format!(" --iodd '{}'", file.display());
     }
     if let Some(folder) = &args.cases.folder {
         command += &format!(" --cases '{}'", folder.display());

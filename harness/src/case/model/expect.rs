@@ -210,6 +210,8 @@ pub enum Expected {
     Octets(Vec<u8>),
     /// So many octets, whichever.
     Count(usize),
+    /// What the IODD given by `--iodd` declares of this object.
+    Declared(Declared),
     /// A mode.
     Mode(Mode),
     /// What was configured.
@@ -235,4 +237,21 @@ pub enum Outcome {
     Negative,
     /// Result(-) with this error.
     Error(u16),
+}
+
+/// What an IODD declares and a product answers to a read.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Declared {
+    /// Index 0x4201: version, mode and FSP_IO_StructCRC of its twelve octets; the rest is the user's.
+    Protocol,
+    /// Index 0x4210 (iec2022).
+    TimeToReady,
+    /// Index 0x4211 (iec2022).
+    MinShutDownTime,
+    /// Index 0x4212.
+    ParamDescCrc,
+    /// Index 0x4213 (iec2022).
+    Wcdt,
+    /// Index 0x4214 (iec2022).
+    Ofdt,
 }
