@@ -30,6 +30,7 @@ pub mod problem;
 pub mod profile;
 pub mod session;
 pub mod stopwatch;
+pub mod structure;
 pub mod tape;
 pub mod tester;
 pub mod tours;

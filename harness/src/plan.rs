@@ -4,6 +4,7 @@ use crate::case::{Binding, Case};
 use crate::library::{Library, needs};
 use crate::problem::Problem;
 use crate::profile::{Parameterization, Profile};
+use crate::structure::{self, Declared};
 use fsct_adapters::{ClockKind, Description, Pco, Role};
 use fsct_protocol::Edition;
 use std::borrow::Cow;
@@ -104,7 +105,11 @@ pub fn plan<'l>(
     // Whoever names nothing wants what the DUT is for; whoever names something is told why it does not apply.
     let all = selection.suites.is_empty() && selection.filter.is_empty();
     for case in library.cases().filter(|case| !all || case.role == description.role) {
-        let expansion = case.expand(&description.offers)?;
+        let offers = match profile.structure.filter(|_| of_structure(case)) {
+            Some(structure) => structure.narrowed(&description.offers),
+            None => description.offers.clone(),
+        };
+        let expansion = case.expand(&offers)?;
         let times = selection.repeat.max(1);
         let points = expansion.points.into_iter();
         for binding in points.flat_map(|point| repeated(point, times)) {
@@ -135,6 +140,11 @@ pub fn plan<'l>(
         });
     }
     Ok(plan)
+}
+
+/// Whether a case is about the FS I/O structure, and so about the sizes it has.
+fn of_structure(case: &Case) -> bool {
+    case.features.iter().any(|feature| feature == structure::DECLARED)
 }
 
 /// This point as often as asked, each with its number when that is more than once.
@@ -186,7 +196,17 @@ fn excluded(library: &Library, profile: &Profile, description: &Description, pla
         ));
     }
     if let Some(feature) = case.features.iter().find(|feature| !profile.features.contains(feature)) {
-        return Some(format!("the profile does not list the feature `{feature}`"));
+        let known = structure::term(feature).map(str::to_owned);
+        return Some(known.unwrap_or_else(|| format!("the profile does not list the feature `{feature}`")));
+    }
+    let variant = binding.variant;
+    if let Some((out, input)) = profile.structure.filter(|_| of_structure(case)).map(Declared::sizes)
+        && (out, input) != (variant.pd_out.into(), variant.pd_in.into())
+    {
+        let mode = variant.mode;
+        return Some(format!(
+            "the profile declares {out} octets of FS-PDout and {input} of FS-PDin, which the DUT does not offer with {mode}"
+        ));
     }
     if let Some(feature) =
         records.iter().filter_map(|record| record.applies.as_ref()).find(|f| !profile.features.contains(f))

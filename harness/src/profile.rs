@@ -2,6 +2,7 @@
 
 use crate::oracle::{Mask, Tolerances};
 use crate::problem::{Problem, Source};
+use crate::structure::Declared;
 use crate::tree::Fields;
 use crate::yaml;
 use fsct_adapters::{ClockKind, Description, Role};
@@ -71,6 +72,8 @@ pub struct Profile {
     pub reading: Reading,
     /// How the product is parameterized.
     pub parameterization: Parameterization,
+    /// FS I/O structure of an FS-Device; `None`: not declared.
+    pub structure: Option<Declared>,
     /// Features of the product that some requirements are limited to, such as `ossde`.
     pub features: Vec<String>,
     /// Tolerances the profile adds.
@@ -136,6 +139,9 @@ impl Profile {
         if tech_par_crc != 0 || tech_par_crc_armed != 0 {
             features.push(ARMED.to_owned());
         }
+        let mut of_structure = Vec::new();
+        let structure = Declared::read(&mut fields, &mut of_structure);
+        features.extend(structure.into_iter().flat_map(Declared::features).map(str::to_owned));
         let mut mask = |key| {
             let mut mask = Mask::NONE;
             for (text, at) in fields.texts(key) {
@@ -157,6 +163,7 @@ impl Profile {
             fields.problem(root.at.clone(), message);
         }
         fields.finish(&mut problems);
+        problems.extend(of_structure);
         match (name, role, Port::new(port)) {
             (Some((name, _)), Some(role), Some(port)) if problems.is_empty() => Ok(Profile {
                 name,
@@ -182,6 +189,7 @@ impl Profile {
                 scl_start_ms,
                 reading,
                 parameterization,
+                structure,
                 features,
                 tolerate,
                 strict,
@@ -288,8 +296,14 @@ impl Profile {
 
     /// What contradicts what the DUT says of itself; empty when they agree.
     pub fn contradicts(&self, description: &Description) -> Option<String> {
-        (self.role != description.role).then(|| {
-            format!("profile `{}` is for a {}, the DUT says it is a {}", self.name, self.role, description.role)
-        })
+        if self.role != description.role {
+            let (name, role) = (&self.name, self.role);
+            return Some(format!("profile `{name}` is for a {role}, the DUT says it is a {}", description.role));
+        }
+        let structure = self.structure.filter(|structure| !structure.fits(description))?;
+        let ((out, input), name) = (structure.sizes(), &self.name);
+        Some(format!(
+            "profile `{name}` declares {out} octets of FS-PDout and {input} of FS-PDin, which the DUT does not offer"
+        ))
     }
 }
