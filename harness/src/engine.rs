@@ -1,5 +1,6 @@
 //! Executes one case: start condition, steps, and the liveness check every case ends with.
 
+mod gateway;
 mod lines;
 mod port;
 mod reach;
@@ -511,6 +512,9 @@ impl<'s, 'd> Engine<'s, 'd> {
     /// to operate. A DUT that is switched off or was never started is started first. So no case passes on a DUT that does
     /// nothing.
     fn liveness(&mut self) -> Result<(), Stop> {
+        if self.session.profile.no_fs_port_mode {
+            return self.gateway_lives();
+        }
         let running = self.session.link().oracle.state().is_some()
             && (self.session.role() == Role::Device || self.session.mode() == Mode::Operate);
         if running {

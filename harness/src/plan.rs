@@ -35,6 +35,9 @@ impl Planned<'_> {
     }
 }
 
+/// The feature of cases for gateways of a safety fieldbus, which need not be FS-Masters.
+const GATEWAY: &str = "gateway";
+
 /// What runs, in order.
 #[derive(Debug, Default)]
 pub struct Plan<'l> {
@@ -172,6 +175,10 @@ fn excluded(library: &Library, profile: &Profile, description: &Description, pla
     if case.role != description.role {
         return Some(format!("the case is for a {}, the DUT is a {}", case.role, description.role));
     }
+    let gateway = case.features.iter().any(|feature| feature == GATEWAY);
+    if profile.no_fs_port_mode && !gateway {
+        return Some("the product claims no FS_PortMode: no SAFETYCOM, MIXEDSAFETYCOM or OSSDE, and no SCL".to_owned());
+    }
     let edition = binding.variant.edition;
     let records: Vec<_> = case.requirements.iter().filter_map(|id| library.ledger.get(id)).collect();
     if !records.is_empty() && records.iter().all(|record| !record.exists_in(edition)) {
@@ -216,6 +223,7 @@ fn excluded(library: &Library, profile: &Profile, description: &Description, pla
     let always: &[Pco] = match description.role {
         Role::Device => &[Pco::Power, Pco::Link],
         // Without the gateway nobody can acknowledge.
+        Role::Master if gateway => &[Pco::Power, Pco::App, Pco::Line],
         Role::Master => &[Pco::Power, Pco::Link, Pco::App],
     };
     if let Some(pco) = always.iter().find(|pco| !description.pcos.contains(pco)) {

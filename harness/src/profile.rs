@@ -72,6 +72,8 @@ pub struct Profile {
     pub reading: Reading,
     /// How the product is parameterized.
     pub parameterization: Parameterization,
+    /// The product claims no FS_PortMode, so no SCL: it is a gateway of a safety fieldbus, no FS-Master.
+    pub no_fs_port_mode: bool,
     /// FS I/O structure of an FS-Device; `None`: not declared.
     pub structure: Option<Declared>,
     /// Features of the product that some requirements are limited to, such as `ossde`.
@@ -139,6 +141,7 @@ impl Profile {
         if tech_par_crc != 0 || tech_par_crc_armed != 0 {
             features.push(ARMED.to_owned());
         }
+        let no_fs_port_mode = fields.optional_word("FS_PortMode", &[(true, "none")]).unwrap_or(false);
         let mut of_structure = Vec::new();
         let structure = Declared::read(&mut fields, &mut of_structure);
         features.extend(structure.into_iter().flat_map(Declared::features).map(str::to_owned));
@@ -189,6 +192,7 @@ impl Profile {
                 scl_start_ms,
                 reading,
                 parameterization,
+                no_fs_port_mode,
                 structure,
                 features,
                 tolerate,
