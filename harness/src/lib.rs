@@ -20,6 +20,7 @@ pub mod library;
 pub mod limits;
 pub mod lines;
 pub mod link;
+pub mod mapping;
 pub mod matrix;
 pub mod oracle;
 pub mod parameterize;

@@ -128,6 +128,7 @@ pub fn plan<'l>(
             }
         }
         for (binding, term) in expansion.excluded {
+            let term = unclaimed(profile, case).unwrap_or(term);
             let key = format!("{}{}", case.id, binding.key());
             let planned = Planned { case, binding, key };
             if selection.matches(&planned) {
@@ -143,6 +144,17 @@ pub fn plan<'l>(
         });
     }
     Ok(plan)
+}
+
+/// Whether a case is for gateways, FS-Masters or not.
+fn of_gateway(case: &Case) -> bool {
+    case.features.iter().any(|feature| feature == GATEWAY)
+}
+
+/// Why nothing about an FS-Master applies to a product that does not claim to be one.
+fn unclaimed(profile: &Profile, case: &Case) -> Option<String> {
+    (profile.no_fs_port_mode && case.role == Role::Master && !of_gateway(case))
+        .then(|| "the product claims no FS_PortMode: no SAFETYCOM, MIXEDSAFETYCOM or OSSDE, and no SCL".to_owned())
 }
 
 /// Whether a case is about the FS I/O structure, and so about the sizes it has.
@@ -175,9 +187,8 @@ fn excluded(library: &Library, profile: &Profile, description: &Description, pla
     if case.role != description.role {
         return Some(format!("the case is for a {}, the DUT is a {}", case.role, description.role));
     }
-    let gateway = case.features.iter().any(|feature| feature == GATEWAY);
-    if profile.no_fs_port_mode && !gateway {
-        return Some("the product claims no FS_PortMode: no SAFETYCOM, MIXEDSAFETYCOM or OSSDE, and no SCL".to_owned());
+    if let Some(term) = unclaimed(profile, case) {
+        return Some(term);
     }
     let edition = binding.variant.edition;
     let records: Vec<_> = case.requirements.iter().filter_map(|id| library.ledger.get(id)).collect();
@@ -223,7 +234,7 @@ fn excluded(library: &Library, profile: &Profile, description: &Description, pla
     let always: &[Pco] = match description.role {
         Role::Device => &[Pco::Power, Pco::Link],
         // Without the gateway nobody can acknowledge.
-        Role::Master if gateway => &[Pco::Power, Pco::App, Pco::Line],
+        Role::Master if of_gateway(case) => &[Pco::Power, Pco::App, Pco::Line],
         Role::Master => &[Pco::Power, Pco::Link, Pco::App],
     };
     if let Some(pco) = always.iter().find(|pco| !description.pcos.contains(pco)) {
@@ -243,7 +254,7 @@ pub fn unreached(role: Role) -> Description {
     Description {
         role,
         // No case needs more than this.
-        ports: if role == Role::Master { 2 } else { 1 },
+        ports: if role == Role::Master { 4 } else { 1 },
         pcos: Pco::ALL.to_vec(),
         offers: crate::library::EVERYTHING.to_vec(),
         clock: fsct_adapters::Clock { kind: ClockKind::Virtual, resolution_ns: 1, uncertainty_ns: 0 },

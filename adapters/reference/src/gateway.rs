@@ -251,7 +251,7 @@ impl Gateway {
             let [a, b] = input.channels.map(|channel| channel.filtered);
             // While the channels differ for a moment the value is that of the lower one.
             let on = (a && (b || self.options.mutant == Some(GatewayMutant::DiscrepancyUnseen))) || (open && !a && !b);
-            if good {
+            if good && input.equal() {
                 input.last = on;
             }
             let value = if good { on } else { kept && input.last };
