@@ -617,7 +617,8 @@ impl<'s, 'd> Engine<'s, 'd> {
             self.session.link_mut().oracle.parameterized(now);
             return Ok(());
         }
-        let of_profile = |(field, value): &(&RecordField, Value)| field.name == IO_STRUCT_CRC && *value == Value::Profile;
+        let of_profile =
+            |(field, value): &(&RecordField, Value)| field.name == IO_STRUCT_CRC && *value == Value::Profile;
         let declared = profile.structure.filter(|_| asked.set.iter().any(of_profile));
         let io_struct_crc = match declared.and_then(|structure| structure.signature(self.session.setup().mode)) {
             Some(computed) => computed,

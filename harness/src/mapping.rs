@@ -81,7 +81,8 @@ pub fn text(ledger: &Ledger) -> String {
         ledger.iter().filter_map(|record| Some((record.relation.as_ref()?, record))).collect();
     rows.sort_by_key(|(relation, record)| (relation.kind, &record.id));
     let findings = rows.iter().filter(|(relation, _)| relation.kind.is_finding()).count();
-    let mut text = format!("{} statements of the handbook map to SDCI-FS, {findings} of them are findings\n", rows.len());
+    let mut text =
+        format!("{} statements of the handbook map to SDCI-FS, {findings} of them are findings\n", rows.len());
     for (relation, record) in rows {
         let [v1_1, iec2022] = relation.clauses.each_ref().map(|clause| if clause.is_empty() { "none" } else { clause });
         let finding = if relation.kind.is_finding() { "finding: " } else { "" };

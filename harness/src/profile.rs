@@ -144,6 +144,12 @@ impl Profile {
         let no_fs_port_mode = fields.optional_word("FS_PortMode", &[(true, "none")]).unwrap_or(false);
         let mut of_structure = Vec::new();
         let structure = Declared::read(&mut fields, &mut of_structure);
+        if role == Some(Role::Master) && structure.is_some() {
+            fields.problem(root.at.clone(), "`FS_IO_in` and `FS_IO_out` are for an FS-Device");
+        }
+        if role == Some(Role::Device) && no_fs_port_mode {
+            fields.problem(root.at.clone(), "`FS_PortMode` is for an FS-Master");
+        }
         features.extend(structure.into_iter().flat_map(Declared::features).map(str::to_owned));
         let mut mask = |key| {
             let mut mask = Mask::NONE;

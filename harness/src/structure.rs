@@ -39,9 +39,7 @@ impl Declared {
         };
         match (direction("FS_IO_in"), direction("FS_IO_out")) {
             (None, None) => None,
-            (input, output) => {
-                Some(Declared { input: input.unwrap_or_default(), output: output.unwrap_or_default() })
-            }
+            (input, output) => Some(Declared { input: input.unwrap_or_default(), output: output.unwrap_or_default() }),
         }
     }
 
@@ -85,5 +83,57 @@ pub fn term(feature: &str) -> Option<&'static str> {
         DECLARED => Some("the profile declares no FS I/O structure, neither `FS_IO_in` nor `FS_IO_out`"),
         PADDED => Some("the profile declares no FS-PDin with padding bits"),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::problem::Source;
+    use crate::profile::Profile;
+    use fsct_protocol::ProtMode;
+    use rstest::rstest;
+    use std::sync::Arc;
+
+    fn profile(dut: &str, rest: &str) -> Result<Profile, String> {
+        let text = format!("profile: test\ndut: {dut}\n{rest}\n");
+        let source = Arc::new(Source { name: "test.yaml".to_owned(), text });
+        Profile::parse(&source).map_err(|problems| problems.iter().map(ToString::to_string).collect())
+    }
+
+    #[rstest]
+    #[case::figure_a_1("FS_IO_in: {bits: 13, int16: 1}", (0, 4), Some(0x9A28), &["FS_IO", "FS_IO padding"])]
+    #[case::no_padding("FS_IO_in: {bits: 8}\nFS_IO_out: {int16: 1}", (2, 1), None, &["FS_IO"])]
+    #[case::nothing("FS_IO_in: {}", (0, 0), Some(0x5712), &["FS_IO"])]
+    fn a_declaration_has_sizes_a_signature_and_features(
+        #[case] declared: &str,
+        #[case] sizes: (usize, usize),
+        #[case] crc: Option<u16>,
+        #[case] features: &[&str],
+    ) {
+        let profile = profile("device", declared).expect("a profile");
+        let structure = profile.structure.expect("it is declared");
+        assert_eq!(structure.sizes(), sizes);
+        assert!(crc.is_none_or(|crc| structure.signature(ProtMode::Crc32) == Some(crc)));
+        assert_eq!(profile.features, features);
+    }
+
+    #[test]
+    fn what_an_spdu_of_the_mode_cannot_carry_has_no_signature() {
+        let profile = profile("device", "FS_IO_in: {bits: 13, int16: 1}").expect("a profile");
+        assert_eq!(profile.structure.and_then(|structure| structure.signature(ProtMode::Crc16)), None);
+        assert!(profile.structure.is_some());
+    }
+
+    #[rstest]
+    #[case("device", "FS_IO_in: {int32: 7}", "declares 28 octets, an SPDU carries 25 at most")]
+    #[case("device", "FS_IO_in: {bit: 7}", "unknown key `bit` in FS_IO_in")]
+    #[case("device", "FS_IO_out: {bits: 201}", "a number from 0 to 200")]
+    #[case("device", "FS_IO_out: 3", "FS_IO_out has to be a map of keys")]
+    #[case("master", "FS_IO_out: {bits: 8}", "are for an FS-Device")]
+    #[case("device", "FS_PortMode: none", "is for an FS-Master")]
+    #[case("master", "FS_PortMode: some", "is no value of `FS_PortMode`")]
+    fn a_wrong_declaration_is_told(#[case] dut: &str, #[case] declared: &str, #[case] told: &str) {
+        let problems = profile(dut, declared).expect_err("it is wrong");
+        assert!(problems.contains(told), "{problems}");
     }
 }

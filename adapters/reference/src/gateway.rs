@@ -75,10 +75,11 @@ impl GatewayOptions {
         for (known, value) in names(query, ["mutant", "ack"])? {
             match (known, value) {
                 ("mutant", value) => {
-                    options.mutant = Some(GatewayMutant::from_name(value).ok_or_else(|| OptionError::UnknownMutant {
-                        given: value.to_owned(),
-                        nearest: nearest(value, GatewayMutant::ALL.iter().map(|mutant| mutant.name())),
-                    })?);
+                    options.mutant =
+                        Some(GatewayMutant::from_name(value).ok_or_else(|| OptionError::UnknownMutant {
+                            given: value.to_owned(),
+                            nearest: nearest(value, GatewayMutant::ALL.iter().map(|mutant| mutant.name())),
+                        })?);
                 }
                 (_, "auto") => options.operator = false,
                 (_, "operator") => options.operator = true,
@@ -137,6 +138,14 @@ impl Input {
     }
 }
 
+/// What the host sees.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+struct Shown {
+    image: [u8; 3],
+    /// Of each port: GOOD, and acknowledgment asked for.
+    ports: [(bool, bool); PORTS],
+}
+
 /// The gateway.
 #[derive(Debug)]
 pub struct Gateway {
@@ -145,7 +154,7 @@ pub struct Gateway {
     /// When its inputs are read, while it has supply.
     ready_at: Option<u64>,
     inputs: [Input; PORTS],
-    shown: Option<([u8; 3], [(bool, bool); PORTS])>,
+    shown: Option<Shown>,
 }
 
 impl Gateway {
@@ -198,7 +207,8 @@ impl Gateway {
     }
 
     fn advance_to(&mut self, until: u64, seen: &mut Sink<'_>) {
-        while let Some(due) = self.inputs.iter().filter_map(Input::due).chain(self.ready_at).filter(|due| *due > self.now).min()
+        while let Some(due) =
+            self.inputs.iter().filter_map(Input::due).chain(self.ready_at).filter(|due| *due > self.now).min()
             && due <= until
         {
             self.now = due;
@@ -278,13 +288,13 @@ impl Gateway {
             Some(GatewayMutant::OutputQualifierShifted) => outputs <<= 4,
             _ => {}
         }
-        let now = ([values, qualifiers, outputs], ports);
+        let now = Shown { image: [values, qualifiers, outputs], ports };
         if self.shown.replace(now) == Some(now) {
             return;
         }
         for (port, (good, request)) in (1..).zip(ports) {
             let mut tell = |service, value| seen.push(Seen::Service { port, service, value });
-            tell(Service::PdinM, Octets::new(&now.0).unwrap_or_default());
+            tell(Service::PdinM, Octets::new(&now.image).unwrap_or_default());
             tell(Service::Qualifier, Octets::bit(good));
             tell(Service::ChfackreqS, Octets::bit(request));
         }

@@ -154,7 +154,8 @@ impl Parameters {
             }
             INDEX_VERIFY => Err(error_type::ACCESS_DENIED),
             index::PARAM_DESC_CRC => {
-                let described = param_desc(self.variant.mode.code(), WATCHDOG_RANGE_MS, io_struct_crc(self.variant, None));
+                let described =
+                    param_desc(self.variant.mode.code(), WATCHDOG_RANGE_MS, io_struct_crc(self.variant, None));
                 let short = (edition == Edition::V1_1) != self.is(Mutant::ParamDescCrcOfOtherEdition);
                 match short {
                     true => item(&crc16(0, &described).to_be_bytes(), &[], subindex),

@@ -4,8 +4,8 @@ use crate::campaign::Bench;
 use crate::problem::suggestion;
 use fsct_adapters::{Address, Dut, DutError, Monotonic, REPLY_TIMEOUT, connect_within};
 use fsct_reference::{
-    ConstantDevice, ConstantMaster, EchoDevice, EchoMaster, FsDevice, FsMaster, Gateway, GatewayOptions, MasterOptions, NullDevice, NullMaster,
-    Options,
+    ConstantDevice, ConstantMaster, EchoDevice, EchoMaster, FsDevice, FsMaster, Gateway, GatewayOptions, MasterOptions,
+    NullDevice, NullMaster, Options,
 };
 use std::io;
 use std::path::Path;

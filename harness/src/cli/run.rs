@@ -467,13 +467,7 @@ fn asked(role: &str, asked: &Asked) {
     }
 }
 
-fn conclude(
-    args: &Args,
-    no_fs_master: &[&str],
-    plans: &[Plan<'_>],
-    summary: &Summary,
-    interrupted: bool,
-) {
+fn conclude(args: &Args, no_fs_master: &[&str], plans: &[Plan<'_>], summary: &Summary, interrupted: bool) {
     let coloured = colour(std::io::stdout().is_terminal());
     let mut suites: BTreeMap<&str, usize> = BTreeMap::new();
     let cases = plans.iter().flat_map(|plan| &plan.cases);

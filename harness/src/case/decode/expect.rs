@@ -113,9 +113,7 @@ fn values(key: Key) -> (Words, Option<u32>, bool) {
         | Key::Cq
         | Key::Iq => (&[], BITS, false),
         Key::Qualifier => (&[(Expected::Number(1), "GOOD"), (Expected::Number(0), "BAD")], None, false),
-        Key::Pdin => {
-            (&[(Expected::Live, "live"), (Expected::Safe, "safe"), (Expected::Padded, "padded")], None, true)
-        }
+        Key::Pdin => (&[(Expected::Live, "live"), (Expected::Safe, "safe"), (Expected::Padded, "padded")], None, true),
         Key::Pdout => (&[(Expected::Live, "live"), (Expected::Safe, "safe")], None, true),
         Key::Structure => (&[(Expected::Count(16), "words")], None, false),
         Key::PortNum => (&[(Expected::Right, "right")], Some(0xFF), false),
