@@ -1,5 +1,6 @@
 //! Executes one case: start condition, steps, and the liveness check every case ends with.
 
+mod gateway;
 mod lines;
 mod port;
 mod reach;
@@ -23,6 +24,8 @@ use fsct_reports::record::{Execution, Reason, StepRecord, Verdict};
 
 /// The bound of the liveness requirement (R-11.5.3-22): 8 SCL cycles plus 2 FSP_Watchdog.
 const LIVENESS_SCL_CYCLES: u64 = 8;
+/// Field of the verify record that the profile may declare.
+const IO_STRUCT_CRC: &str = "FSP_IO_StructCRC";
 /// How long an Event to a deviating verify record is waited for.
 const EVENT_NS: u64 = 100_000_000;
 
@@ -512,6 +515,9 @@ impl<'s, 'd> Engine<'s, 'd> {
     /// to operate. A DUT that is switched off or was never started is started first. So no case passes on a DUT that does
     /// nothing.
     fn liveness(&mut self) -> Result<(), Stop> {
+        if self.session.profile.no_fs_port_mode {
+            return self.gateway_lives();
+        }
         let running = self.session.link().oracle.state().is_some()
             && (self.session.role() == Role::Device || self.session.mode() == Mode::Operate);
         if running {
@@ -577,7 +583,15 @@ impl<'s, 'd> Engine<'s, 'd> {
                             ([setup.port.number(), next << 5], setup.pd_out)
                         }
                     };
-                    Octets::new(self.tester_mut().data(data, length, &trailer).octets()).unwrap_or_default()
+                    let mut octets = self.tester_mut().data(data, length, &trailer).octets().to_vec();
+                    // A technology with this structure has nothing to put there.
+                    if let Some(structure) = self.session.profile.structure
+                        && *service == Service::PdinD
+                        && structure.input.octets() == length
+                    {
+                        structure.input.clear_padding(&mut octets);
+                    }
+                    Octets::new(&octets).unwrap_or_default()
                 }
             };
             self.session.set(*service, value)?;
@@ -606,7 +620,13 @@ impl<'s, 'd> Engine<'s, 'd> {
             self.session.link_mut().oracle.parameterized(now);
             return Ok(());
         }
-        let io_struct_crc = self.io_struct_crc()?;
+        let of_profile =
+            |(field, value): &(&RecordField, Value)| field.name == IO_STRUCT_CRC && *value == Value::Profile;
+        let declared = profile.structure.filter(|_| asked.set.iter().any(of_profile));
+        let io_struct_crc = match declared.and_then(|structure| structure.signature(self.session.setup().mode)) {
+            Some(computed) => computed,
+            None => self.io_struct_crc()?,
+        };
         for (index, data) in parameterize::records(profile, asked, self.session.setup().mode, io_struct_crc) {
             self.session.acyclic(Stimulus::Write { index, subindex: 0, data })?;
             let written = self.session.reply == Some(Reply::Written);

@@ -43,7 +43,9 @@ pub fn judge(expectation: &Expectation, before: &Before, session: &Session<'_>, 
         }
         Key::Mcount | Key::SetSd | Key::ChFAckReq => spdu_field(expectation, before, session)?,
         Key::PortNum | Key::Reserved => frame_field(expectation, session),
+        Key::Pdin if expectation.value == Expected::Padded => padding(session)?,
         Key::Pdin => pdin(expectation, session)?,
+        Key::Structure => structure(session)?,
         Key::Pdout => pdout(expectation, session)?,
         Key::Image => image(expectation, before, session),
         Key::Nsr => nsr(expectation, session),
@@ -231,6 +233,24 @@ fn pdin(expectation: &Expectation, session: &Session<'_>) -> Option<Judged> {
     Some(compare(expected, session.answer().map(|view| hex(view.pd()))))
 }
 
+/// The octet of FS-PDin that is not filled.
+fn padding(session: &Session<'_>) -> Option<Judged> {
+    let input = session.profile.structure?.input;
+    let (at, bits) = input.padding().filter(|_| input.octets() == session.setup().pd_in)?;
+    let right = session.answer().filter(|view| view.signature_matches(session.setup().reading));
+    let octet = right.and_then(|view| view.pd().get(at).copied());
+    let observed = octet.map_or_else(|| "no SPDU".to_owned(), |octet| format!("octet {at} is {octet:02X}"));
+    let met = octet.is_some_and(|octet| octet & bits == 0);
+    Some((format!("padding bits {bits:02X} of octet {at} are 0"), observed, met))
+}
+
+/// Whether the declared structure is made of words of 16 bits.
+fn structure(session: &Session<'_>) -> Option<Judged> {
+    let (out, input) = session.profile.structure?.sizes();
+    let observed = format!("{out} octets of FS-PDout, {input} of FS-PDin");
+    Some(("an even number of octets each way".to_owned(), observed, out % 2 == 0 && input % 2 == 0))
+}
+
 fn image(expectation: &Expectation, before: &Before, session: &Session<'_>) -> Judged {
     let text = |image: &Option<Octets>| match image {
         Some(octets) if octets.as_slice().iter().any(|octet| *octet != 0) => hex(octets.as_slice()),
@@ -294,6 +314,7 @@ fn reply(expectation: &Expectation, session: &Session<'_>) -> Option<Judged> {
         }
         Expected::Octets(octets) => hex(octets),
         Expected::Configured => hex(&session.profile.authenticity().to_octets()),
+        Expected::Structure => return Some(structure(session)),
         Expected::Count(count) => {
             let met = matches!(&session.reply, Some(Reply::Value(octets)) if octets.len() == *count);
             return Some((format!("{count} octets read"), observed, met));
@@ -339,6 +360,18 @@ fn declared(item: Declared, octets: &[u8], declaration: &Declaration) -> Option<
         Declared::Ofdt => declaration.ofdt?.to_be_bytes().to_vec(),
     };
     Some((format!("{}, as the IODD declares", hex(&value)), value == octets))
+}
+
+/// The protocol record, which has to hold the FSP_IO_StructCRC of the declared structure.
+fn structure(session: &Session<'_>) -> Judged {
+    let wanted = session.profile.structure.and_then(|structure| structure.signature(session.setup().mode));
+    let told = match &session.reply {
+        Some(Reply::Value(octets)) => Protocol::fields(octets).ok().map(|protocol| protocol.io_struct_crc),
+        _ => None,
+    };
+    let text = |crc: u16| format!("FSP_IO_StructCRC {crc:04X}");
+    let expected = wanted.map_or_else(|| "a structure that fits into the mode".to_owned(), text);
+    (expected, told.map_or_else(|| session.replied(), text), wanted.is_some() && told == wanted)
 }
 
 #[cfg(test)]

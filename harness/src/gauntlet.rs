@@ -62,7 +62,7 @@ impl Fault {
 /// The [`Problem`] of a plan, or one that says that the cases come without the profile.
 pub fn matrix(library: &Library, role: Role, done: &(dyn Fn() + Sync)) -> Result<Matrix, Problem> {
     let faults = Fault::all(role);
-    let name = default_profile(role);
+    let name = judged_by(role);
     let profile = library.profiles.get(&name).ok_or_else(|| {
         Problem::without_place(
             "profiles",
@@ -115,6 +115,14 @@ pub fn matrix(library: &Library, role: Role, done: &(dyn Fn() + Sync)) -> Result
     let mutants: Vec<Row> = rows.into_inner().unwrap_or_else(PoisonError::into_inner).into_iter().flatten().collect();
     let cases = cases(&plan, &mutants);
     Ok(Matrix { role: role.to_string(), mutants, cases })
+}
+
+/// The profile of the references: for the FS-Device one that declares its FS I/O structure, so that cases about it run.
+fn judged_by(role: Role) -> String {
+    match role {
+        Role::Device => "device-io-structure".to_owned(),
+        Role::Master => default_profile(role),
+    }
 }
 
 /// What begins the kinds of reasons that are the expectations of a case.

@@ -3,6 +3,7 @@
 //! Data: `testcases/requirements/*.yaml`. What stands behind `remark:` in `expect` is inferred or undecided and is shown,
 //! never failed; `base:` names a part only the base standard prints; `applies:` limits a record to some products.
 
+use crate::mapping::Relation;
 use crate::problem::{Problem, Source};
 use crate::tree::{self, Fields};
 use crate::yaml::{self, Node, Value};
@@ -98,6 +99,8 @@ pub struct Requirement {
     pub differs: Option<String>,
     /// Why it is untestable, or why nothing is done about it yet.
     pub why: Option<String>,
+    /// What it is to SDCI-FS, for a statement about a product that does not claim it.
+    pub relation: Option<Relation>,
     /// File and line.
     pub place: String,
 }
@@ -179,13 +182,15 @@ fn record(
     let mut optional = |key: &'static str| fields.optional(key).map(|placed| placed.0);
     let (base, applies, doubt, differs, why) =
         (optional("base"), optional("applies"), optional("doubt"), optional("differs"), optional("why"));
-    for key in ["verify", "reviewed", "variant", "derived", "bench", "sdci_fs"] {
+    let relation = fields.get("sdci_fs");
+    for key in ["verify", "reviewed", "variant", "derived", "bench"] {
         let _ = fields.get(key);
     }
     if class == Some(Class::Untestable) && why.is_none() {
         fields.problem(item.at.clone(), "an untestable requirement says `why`");
     }
     fields.finish(problems);
+    let relation = relation.and_then(|node| Relation::read(source, node, problems));
     let (id, at) = id?;
     let expect = expect?.0;
     let (expect, remark) = match expect.split_once("remark:") {
@@ -207,6 +212,7 @@ fn record(
         doubt,
         differs,
         why,
+        relation,
         place: format!("{}:{}", source.name, source.line_column(at.start).0),
     };
     Some((record, at))

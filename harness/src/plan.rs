@@ -4,6 +4,7 @@ use crate::case::{Binding, Case};
 use crate::library::{Library, needs};
 use crate::problem::Problem;
 use crate::profile::{Parameterization, Profile};
+use crate::structure::{self, Declared};
 use fsct_adapters::{ClockKind, Description, Pco, Role};
 use fsct_protocol::Edition;
 use std::borrow::Cow;
@@ -33,6 +34,9 @@ impl Planned<'_> {
         }
     }
 }
+
+/// The feature of cases for gateways of a safety fieldbus, which need not be FS-Masters.
+const GATEWAY: &str = "gateway";
 
 /// What runs, in order.
 #[derive(Debug, Default)]
@@ -112,7 +116,11 @@ pub fn plan<'l>(
     let own = |case: &&Case| case.role == description.role;
     let all = selection.filter.is_empty() && library.cases().filter(own).any(|case| selection.names(case));
     for case in library.cases().filter(|case| !all || own(case)) {
-        let expansion = case.expand(&description.offers)?;
+        let offers = match profile.structure.filter(|_| of_structure(case)) {
+            Some(structure) => structure.narrowed(&description.offers),
+            None => description.offers.clone(),
+        };
+        let expansion = case.expand(&offers)?;
         let times = selection.repeat.max(1);
         let points = expansion.points.into_iter();
         for binding in points.flat_map(|point| repeated(point, times)) {
@@ -128,6 +136,7 @@ pub fn plan<'l>(
             }
         }
         for (binding, term) in expansion.excluded {
+            let term = unclaimed(profile, case).unwrap_or(term);
             let key = format!("{}{}", case.id, binding.key());
             let planned = Planned { case, binding, key };
             if selection.matches(&planned) {
@@ -143,6 +152,22 @@ pub fn plan<'l>(
         });
     }
     Ok(plan)
+}
+
+/// Whether a case is for gateways, FS-Masters or not.
+fn of_gateway(case: &Case) -> bool {
+    case.features.iter().any(|feature| feature == GATEWAY)
+}
+
+/// Why nothing about an FS-Master applies to a product that does not claim to be one.
+fn unclaimed(profile: &Profile, case: &Case) -> Option<String> {
+    (profile.no_fs_port_mode && case.role == Role::Master && !of_gateway(case))
+        .then(|| "the product claims no FS_PortMode: no SAFETYCOM, MIXEDSAFETYCOM or OSSDE, and no SCL".to_owned())
+}
+
+/// Whether a case is about the FS I/O structure, and so about the sizes it has.
+fn of_structure(case: &Case) -> bool {
+    case.features.iter().any(|feature| feature == structure::DECLARED)
 }
 
 /// This point as often as asked, each with its number when that is more than once.
@@ -170,6 +195,9 @@ fn excluded(library: &Library, profile: &Profile, description: &Description, pla
     if case.role != description.role {
         return Some(format!("the case is for a {}, the DUT is a {}", case.role, description.role));
     }
+    if let Some(term) = unclaimed(profile, case) {
+        return Some(term);
+    }
     let edition = binding.variant.edition;
     let records: Vec<_> = case.requirements.iter().filter_map(|id| library.ledger.get(id)).collect();
     if !records.is_empty() && records.iter().all(|record| !record.exists_in(edition)) {
@@ -194,7 +222,17 @@ fn excluded(library: &Library, profile: &Profile, description: &Description, pla
         ));
     }
     if let Some(feature) = case.features.iter().find(|feature| !profile.features.contains(feature)) {
-        return Some(format!("the profile does not list the feature `{feature}`"));
+        let known = structure::term(feature).map(str::to_owned);
+        return Some(known.unwrap_or_else(|| format!("the profile does not list the feature `{feature}`")));
+    }
+    let variant = binding.variant;
+    if let Some((out, input)) = profile.structure.filter(|_| of_structure(case)).map(Declared::sizes)
+        && (out, input) != (variant.pd_out.into(), variant.pd_in.into())
+    {
+        let mode = variant.mode;
+        return Some(format!(
+            "the profile declares {out} octets of FS-PDout and {input} of FS-PDin, which the DUT does not offer with {mode}"
+        ));
     }
     if let Some(feature) =
         records.iter().filter_map(|record| record.applies.as_ref()).find(|f| !profile.features.contains(f))
@@ -204,6 +242,7 @@ fn excluded(library: &Library, profile: &Profile, description: &Description, pla
     let always: &[Pco] = match description.role {
         Role::Device => &[Pco::Power, Pco::Link],
         // Without the gateway nobody can acknowledge.
+        Role::Master if of_gateway(case) => &[Pco::Power, Pco::App, Pco::Line],
         Role::Master => &[Pco::Power, Pco::Link, Pco::App],
     };
     if let Some(pco) = always.iter().find(|pco| !description.pcos.contains(pco)) {
@@ -223,7 +262,7 @@ pub fn unreached(role: Role) -> Description {
     Description {
         role,
         // No case needs more than this.
-        ports: if role == Role::Master { 2 } else { 1 },
+        ports: if role == Role::Master { 4 } else { 1 },
         pcos: Pco::ALL.to_vec(),
         offers: crate::library::EVERYTHING.to_vec(),
         clock: fsct_adapters::Clock { kind: ClockKind::Virtual, resolution_ns: 1, uncertainty_ns: 0 },

@@ -2,6 +2,7 @@
 
 use crate::oracle::{Mask, Tolerances};
 use crate::problem::{Problem, Source};
+use crate::structure::Declared;
 use crate::tree::Fields;
 use crate::yaml;
 use fsct_adapters::{ClockKind, Description, Role};
@@ -72,6 +73,10 @@ pub struct Profile {
     pub reading: Reading,
     /// How the product is parameterized.
     pub parameterization: Parameterization,
+    /// The product claims no FS_PortMode, so no SCL: it is a gateway of a safety fieldbus, no FS-Master.
+    pub no_fs_port_mode: bool,
+    /// FS I/O structure of an FS-Device; `None`: not declared.
+    pub structure: Option<Declared>,
     /// Features of the product that some requirements are limited to, such as `ossde`.
     pub features: Vec<String>,
     /// What the product's IODD declares, when one was given.
@@ -142,6 +147,16 @@ impl Profile {
         if tech_par_crc != 0 || tech_par_crc_armed != 0 {
             features.push(ARMED.to_owned());
         }
+        let no_fs_port_mode = fields.optional_word("FS_PortMode", &[(true, "none")]).unwrap_or(false);
+        let mut of_structure = Vec::new();
+        let structure = Declared::read(&mut fields, &mut of_structure);
+        if role == Some(Role::Master) && structure.is_some() {
+            fields.problem(root.at.clone(), "`FS_IO_in` and `FS_IO_out` are for an FS-Device");
+        }
+        if role == Some(Role::Device) && no_fs_port_mode {
+            fields.problem(root.at.clone(), "`FS_PortMode` is for an FS-Master");
+        }
+        features.extend(structure.into_iter().flat_map(Declared::features).map(str::to_owned));
         let mut mask = |key| {
             let mut mask = Mask::NONE;
             for (text, at) in fields.texts(key) {
@@ -163,6 +178,7 @@ impl Profile {
             fields.problem(root.at.clone(), message);
         }
         fields.finish(&mut problems);
+        problems.extend(of_structure);
         match (name, role, Port::new(port)) {
             (Some((name, _)), Some(role), Some(port)) if problems.is_empty() => Ok(Profile {
                 name,
@@ -188,6 +204,8 @@ impl Profile {
                 scl_start_ms,
                 reading,
                 parameterization,
+                no_fs_port_mode,
+                structure,
                 features,
                 declaration: None,
                 tolerate,
@@ -309,8 +327,14 @@ impl Profile {
 
     /// What contradicts what the DUT says of itself; empty when they agree.
     pub fn contradicts(&self, description: &Description) -> Option<String> {
-        (self.role != description.role).then(|| {
-            format!("profile `{}` is for a {}, the DUT says it is a {}", self.name, self.role, description.role)
-        })
+        if self.role != description.role {
+            let (name, role) = (&self.name, self.role);
+            return Some(format!("profile `{name}` is for a {role}, the DUT says it is a {}", description.role));
+        }
+        let structure = self.structure.filter(|structure| !structure.fits(description))?;
+        let ((out, input), name) = (structure.sizes(), &self.name);
+        Some(format!(
+            "profile `{name}` declares {out} octets of FS-PDout and {input} of FS-PDin, which the DUT does not offer"
+        ))
     }
 }

@@ -113,6 +113,11 @@ impl<'n> Fields<'n> {
         }
     }
 
+    /// The file being read.
+    pub const fn source(&self) -> &'n Arc<Source> {
+        self.source
+    }
+
     /// Adds a problem found by the caller.
     pub fn problem(&mut self, at: Range<usize>, message: impl Into<String>) {
         self.problems.push(Problem::new(self.source, at, message));

@@ -67,3 +67,14 @@ fn without_cases_everything_survives_and_nothing_is_clean() {
     assert!(!gauntlet.is_clean() && gauntlet.html().contains("of them survive"));
     assert!(!Gauntlet { roles: Vec::new(), seconds: 0.0 }.is_clean(), "an empty gauntlet shows nothing");
 }
+
+#[test]
+fn a_declared_structure_kills_what_counts_it_otherwise() {
+    let matrix = against(&["device-io-data"]);
+    for name in ["structure-counts-octets", "structure-counts-padding", "structure-types-swapped"] {
+        let killed = mutant(&matrix, name);
+        assert!(["FSD-2101", "FSD-2102"].iter().all(|id| killed.named_by.iter().any(|by| by == id)), "{killed:?}");
+    }
+    assert_eq!(mutant(&matrix, "padding-not-zero").named_by, ["FSD-2104"]);
+    assert_eq!(matrix.idle().map(|case| case.id.as_str()).collect::<Vec<_>>(), Vec::<&str>::new());
+}

@@ -6,6 +6,7 @@
 pub mod crc;
 mod edition;
 pub mod fsp;
+pub mod io;
 pub mod scl;
 pub mod smi;
 pub mod spdu;

@@ -6,6 +6,7 @@
 mod catalogue;
 mod dead;
 mod device;
+mod gateway;
 mod lines;
 mod master;
 mod mutant;
@@ -15,6 +16,7 @@ pub mod scl;
 
 pub use dead::{ConstantDevice, EchoDevice, NullDevice};
 pub use device::FsDevice;
+pub use gateway::{Gateway, GatewayMutant, GatewayOptions};
 pub use master::{ConstantMaster, EchoMaster, FsMaster, MasterMutant, MasterOptions, NullMaster};
 pub use mutant::Mutant;
 pub use options::{OptionError, Options};

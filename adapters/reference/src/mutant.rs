@@ -304,6 +304,14 @@ catalogue! {
             "The protocol block is read without its signature."
         TimeToReadyWritable "time-to-ready-writable", "A.1 Table A.1, iec2022":
             "FSP_TimeToReady can be written."
+        StructureCountsOctets "structure-counts-octets", "A.2.7 Table A.4":
+            "FSP_IO_StructCRC is held and checked over the number of octets in the place of TotalOfInBits."
+        StructureCountsPadding "structure-counts-padding", "A.2.7 Table A.4":
+            "FSP_IO_StructCRC is held and checked with the padding bits counted as Booleans."
+        StructureTypesSwapped "structure-types-swapped", "A.2.7 Table A.4":
+            "FSP_IO_StructCRC is held and checked with TotalOfInBits and TotalOfInInt16 in each other's place."
+        PaddingNotZero "padding-not-zero", "C.2":
+            "The padding bits of FS-PDin are sent as 1."
         AuthenticityReadReversed "authenticity-read-reversed", "A.1 Table A.1":
             "FSP_Authenticity_1 is read back least significant octet first."
 

@@ -73,6 +73,12 @@ pub enum OptionError {
         /// What was given.
         given: String,
     },
+    /// A way of acknowledgment there is not.
+    #[error("the reference gateway has ack=auto and ack=operator, not {given:?}")]
+    BadAck {
+        /// What was given.
+        given: String,
+    },
     /// The same option twice.
     #[error("the option {name:?} of the reference DUT is given twice")]
     Repeated {

@@ -126,7 +126,7 @@ impl Parameters {
                 version: PROT_VERSION,
                 mode: variant.mode.code(),
                 watchdog_ms: DEFAULT_WATCHDOG_MS,
-                io_struct_crc: io_struct_crc(variant),
+                io_struct_crc: io_struct_crc(variant, mutant),
                 tech_par_crc: FACTORY_TECH_PAR_CRC,
             },
         }
@@ -154,7 +154,8 @@ impl Parameters {
             }
             INDEX_VERIFY => Err(error_type::ACCESS_DENIED),
             index::PARAM_DESC_CRC => {
-                let described = param_desc(self.variant.mode.code(), WATCHDOG_RANGE_MS, io_struct_crc(self.variant));
+                let described =
+                    param_desc(self.variant.mode.code(), WATCHDOG_RANGE_MS, io_struct_crc(self.variant, None));
                 let short = (edition == Edition::V1_1) != self.is(Mutant::ParamDescCrcOfOtherEdition);
                 match short {
                     true => item(&crc16(0, &described).to_be_bytes(), &[], subindex),
@@ -272,7 +273,7 @@ impl Parameters {
         let block = self.taken_as_stored(block);
         let checks = [
             (block.watchdog_ms != 0, event_code::WATCHDOG),
-            (block.io_struct_crc == io_struct_crc(self.variant), event_code::IO_STRUCT_CRC),
+            (block.io_struct_crc == io_struct_crc(self.variant, self.mutant), event_code::IO_STRUCT_CRC),
             (block.tech_par_crc == self.protocol.tech_par_crc, event_code::TECH_PAR_CRC),
             (self.supports(&block) && block == self.protocol, crc_code),
         ];
@@ -350,12 +351,28 @@ fn before(operate: bool) -> Result<(), u16> {
     if operate { Err(error_type::FUNCTION_UNAVAILABLE) } else { Ok(()) }
 }
 
-/// FSP_IO_StructCRC of this variant (A.2.7): all process data are octets of eight Booleans each.
-pub fn io_struct_crc(variant: Variant) -> u16 {
+/// What of the last Boolean octet of FS-PDin this device leaves as padding.
+pub const PADDING: u8 = 0b1110_0000;
+
+/// Octets of FS-PDin with Booleans: from four octets on the last two are an IntegerT(16), so that four are Figure A.1.
+pub const fn boolean_octets(pd_in: u8) -> u8 {
+    if pd_in < 4 { pd_in } else { pd_in - 2 }
+}
+
+/// FSP_IO_StructCRC of this variant (A.2.7). FS-PDout is octets of eight Booleans each; of FS-PDin see [`boolean_octets`] and
+/// [`PADDING`].
+pub fn io_struct_crc(variant: Variant, mutant: Option<Mutant>) -> u16 {
     let range = |pd: u8| variant.mode.spdu_octets(pd.into()) as u8;
-    let bits = |pd: u8| pd.saturating_mul(8);
     let (pd_in, pd_out) = (variant.pd_in, variant.pd_out);
-    crc16(0, &[1, range(pd_in), bits(pd_in), pd_in, 0, 0, range(pd_out), bits(pd_out), pd_out, 0, 0])
+    let octets = boolean_octets(pd_in);
+    let (bits, int16) = ((8 * octets).saturating_sub(3), (pd_in - octets) / 2);
+    let (bits, int16) = match mutant {
+        Some(Mutant::StructureCountsOctets) => (octets, int16),
+        Some(Mutant::StructureCountsPadding) => (8 * octets, int16),
+        Some(Mutant::StructureTypesSwapped) => (int16, bits),
+        _ => (bits, int16),
+    };
+    crc16(0, &[1, range(pd_in), bits, octets, int16, 0, range(pd_out), 8 * pd_out, pd_out, 0, 0])
 }
 
 /// The description of both blocks as FSP_ParamDescCRC covers it (Figure E.1), for one mode and the default watchdog.
@@ -398,9 +415,10 @@ mod tests {
     }
 
     #[test]
-    fn io_struct_crc_of_a_trailer_alone() {
-        let variant = |mode| Variant { edition: Edition::V1_1, mode, pd_out: 0, pd_in: 0 };
-        assert_eq!(io_struct_crc(variant(ProtMode::Crc16)), 0xDEC1);
-        assert_eq!(io_struct_crc(variant(ProtMode::Crc32)), 0x5712);
+    fn io_struct_crc_of_a_trailer_alone_and_of_figure_a_1() {
+        let crc = |mode, pd_in| io_struct_crc(Variant { edition: Edition::V1_1, mode, pd_out: 0, pd_in }, None);
+        assert_eq!(crc(ProtMode::Crc16, 0), 0xDEC1);
+        assert_eq!(crc(ProtMode::Crc32, 0), 0x5712);
+        assert_eq!(crc(ProtMode::Crc32, 4), 0x9A28);
     }
 }

@@ -29,7 +29,7 @@ fn factory_setting() {
     assert_eq!(bench.read(INDEX_AUTHENTICITY, 0), Ok(vec![0; 11]));
     let protocol = bench.protocol();
     assert_eq!((protocol.version, protocol.mode), (1, 1));
-    assert_eq!(protocol.io_struct_crc, io_struct_crc(plain()));
+    assert_eq!(protocol.io_struct_crc, io_struct_crc(plain(), None));
     assert_ne!((protocol.watchdog_ms, protocol.tech_par_crc), (0, 0));
 }
 

@@ -4,8 +4,8 @@ use crate::campaign::Bench;
 use crate::problem::suggestion;
 use fsct_adapters::{Address, Dut, DutError, Monotonic, REPLY_TIMEOUT, connect_within};
 use fsct_reference::{
-    ConstantDevice, ConstantMaster, EchoDevice, EchoMaster, FsDevice, FsMaster, MasterOptions, NullDevice, NullMaster,
-    Options,
+    ConstantDevice, ConstantMaster, EchoDevice, EchoMaster, FsDevice, FsMaster, Gateway, GatewayOptions, MasterOptions,
+    NullDevice, NullMaster, Options,
 };
 use std::io;
 use std::path::Path;
@@ -14,9 +14,10 @@ use std::path::Path;
 const TRIES: usize = 3;
 
 /// What `inproc:` can reach.
-const IN_PROCESS: [&str; 8] = [
+const IN_PROCESS: [&str; 9] = [
     "reference-device",
     "reference-master",
+    "reference-gateway",
     "null-device",
     "echo-device",
     "constant-device",
@@ -106,6 +107,9 @@ fn in_process(name: &str, query: &[(String, String)]) -> Result<Box<dyn Dut>, St
         "null-master" => Box::<NullMaster>::default(),
         "echo-master" => Box::<EchoMaster>::default(),
         "constant-master" => Box::<ConstantMaster>::default(),
+        "reference-gateway" => {
+            Box::new(Gateway::new(GatewayOptions::from_query(query).map_err(|error| error.to_string())?))
+        }
         "reference-master" => {
             Box::new(FsMaster::new(MasterOptions::from_query(query).map_err(|error| error.to_string())?))
         }

@@ -1,8 +1,9 @@
 //! `fsct explain ID`: what a case, a requirement, a tolerance, a limit or a rule for IODDs says, and what hangs on it;
-//! `fsct explain --matrix`.
+//! `fsct explain --matrix` and `--mapping`.
 
 use super::{Cases, USAGE, fail, print};
 use crate::library::Library;
+use crate::mapping;
 use crate::oracle::Tolerances;
 use crate::problem::suggestion;
 use fsct_iodd::{Reach, Severity};
@@ -13,11 +14,14 @@ use fsct_protocol::Edition;
 #[derive(clap::Args, Debug)]
 pub struct Args {
     /// FSD-0231, R-11.5.3-09, A19, t_RP or IODD-24
-    #[arg(required_unless_present = "matrix")]
+    #[arg(required_unless_present_any = ["matrix", "mapping"])]
     id: Option<String>,
     /// Print the error matrix: error class x state x direction, with the case that shows it
     #[arg(long, conflicts_with = "id")]
     matrix: bool,
+    /// Print what a gateway that is no FS-Master shares with SDCI-FS, and where it deviates
+    #[arg(long, conflicts_with_all = ["id", "matrix"])]
+    mapping: bool,
     #[command(flatten)]
     cases: Cases,
 }
@@ -28,6 +32,10 @@ pub fn run(args: &Args) -> u8 {
         Ok(library) => library,
         Err(code) => return code,
     };
+    if args.mapping {
+        print(mapping::text(&library.ledger));
+        return 0;
+    }
     let Some(id) = args.id.as_deref() else {
         return match &library.matrix {
             Some(matrix) => {

@@ -185,6 +185,8 @@ fn execute(args: &Args) -> Result<u8, u8> {
         candidates.retain(|_| has_cases.next().unwrap_or(true));
         plans.retain(|plan| !plan.cases.is_empty());
     }
+    let claims_none = candidates.iter().filter(|one| one.profile.no_fs_port_mode);
+    let no_fs_master: Vec<&str> = claims_none.map(|one| one.profile.name.as_str()).collect();
     let in_force = candidates.iter().fold(Mask::NONE, |mask, one| mask.union(one.allowed));
     let header = Header {
         schema: SCHEMA.to_owned(),
@@ -250,7 +252,7 @@ fn execute(args: &Args) -> Result<u8, u8> {
     written.map_err(|error| fail(RIG, format!("the record in {} cannot be written: {error}", args.out.display())))?;
     let summary = fsct_reports::render(&args.out).map_err(|error| fail(RIG, error))?;
     compare(&plans, &taken, &summary);
-    conclude(args, &plans, &summary, interrupted.load(Ordering::Relaxed));
+    conclude(args, &no_fs_master, &plans, &summary, interrupted.load(Ordering::Relaxed));
     Ok(summary.exit_code())
 }
 
@@ -525,7 +527,7 @@ fn asked(role: &str, asked: &Asked) {
     }
 }
 
-fn conclude(args: &Args, plans: &[Plan<'_>], summary: &Summary, interrupted: bool) {
+fn conclude(args: &Args, no_fs_master: &[&str], plans: &[Plan<'_>], summary: &Summary, interrupted: bool) {
     let coloured = colour(std::io::stdout().is_terminal());
     let mut suites: BTreeMap<&str, usize> = BTreeMap::new();
     let cases = plans.iter().flat_map(|plan| &plan.cases);
@@ -563,6 +565,9 @@ fn conclude(args: &Args, plans: &[Plan<'_>], summary: &Summary, interrupted: boo
     let not_applicable: usize = plans.iter().map(|plan| plan.not_applicable.len()).sum();
     if not_applicable > 0 {
         print(format!("{not_applicable} not applicable, with the reason in the report"));
+    }
+    for name in no_fs_master {
+        print(format!("`{name}` claims no FS_PortMode: nothing above is a verdict on a clause of SDCI-FS"));
     }
     if summary.cases == 0 {
         // Nothing ran: the terms are all there is to say.

@@ -2,6 +2,7 @@
 
 use super::{Inputs, Scl, State};
 use crate::Mutant;
+use crate::parameters::{PADDING, boolean_octets};
 use fsct_protocol::ProtMode;
 use fsct_protocol::crc::{Reading, crc16, crc32};
 use fsct_protocol::spdu::{Control, Pd, Status, View, Wire};
@@ -89,6 +90,7 @@ impl Scl {
                 let octets: Vec<u8> = inputs.pd_in.octets().iter().rev().copied().collect();
                 Pd::new(&octets).unwrap_or(inputs.pd_in)
             }
+            Some(Mutant::PaddingNotZero) => with_padding_set(inputs.pd_in),
             Some(Mutant::PdinTailLost) => self.without_tail(inputs.pd_in.octets()),
             _ => inputs.pd_in,
         }
@@ -158,4 +160,13 @@ impl Scl {
             ProtMode::Crc32 => crc32(seed, secured),
         }
     }
+}
+
+/// Process data with the padding of their last Boolean octet set.
+fn with_padding_set(pd: Pd) -> Pd {
+    let mut octets = pd.octets().to_vec();
+    let booleans = boolean_octets(u8::try_from(octets.len()).unwrap_or(0));
+    let last = usize::from(booleans).checked_sub(1).and_then(|last| octets.get_mut(last));
+    last.into_iter().for_each(|octet| *octet |= PADDING);
+    Pd::new(&octets).unwrap_or(pd)
 }

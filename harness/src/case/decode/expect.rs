@@ -113,7 +113,9 @@ fn values(key: Key) -> (Words, Option<u32>, bool) {
         | Key::Cq
         | Key::Iq => (&[], BITS, false),
         Key::Qualifier => (&[(Expected::Number(1), "GOOD"), (Expected::Number(0), "BAD")], None, false),
-        Key::Pdin | Key::Pdout => (&[(Expected::Live, "live"), (Expected::Safe, "safe")], None, true),
+        Key::Pdin => (&[(Expected::Live, "live"), (Expected::Safe, "safe"), (Expected::Padded, "padded")], None, true),
+        Key::Pdout => (&[(Expected::Live, "live"), (Expected::Safe, "safe")], None, true),
+        Key::Structure => (&[(Expected::Count(16), "words")], None, false),
         Key::PortNum => (&[(Expected::Right, "right")], Some(0xFF), false),
         Key::Reserved => (&[], Some(0xFF), false),
         Key::Image => {
@@ -149,6 +151,7 @@ fn values(key: Key) -> (Words, Option<u32>, bool) {
                 (Expected::Written, "written"),
                 (Expected::Refused, "refused"),
                 (Expected::Configured, "authenticity"),
+                (Expected::Structure, "structure"),
                 (Expected::Count(2), "2 octets"),
                 (Expected::Count(4), "4 octets"),
                 (Expected::Count(12), "12 octets"),

@@ -26,6 +26,8 @@ pub enum Key {
     Dtimeout,
     /// Process data of the answer.
     Pdin,
+    /// The FS I/O structure the profile declares.
+    Structure,
     /// Counter of the SPDU of an FS-Master.
     Mcount,
     /// setSD of the SPDU.
@@ -92,12 +94,13 @@ const BOTH: &[Role] = &[Role::Device, Role::Master];
 
 impl Key {
     /// All keys as written in cases, and the side they are for; fields of ArgBlocks are `block.` and their name.
-    pub const ALL: [(Key, &'static str, &'static [Role]); 33] = [
+    pub const ALL: [(Key, &'static str, &'static [Role]); 34] = [
         (Key::DcountI, "DCount_i", DEVICE),
         (Key::SdSet, "SDset", DEVICE),
         (Key::DcommErr, "DCommErr", DEVICE),
         (Key::Dtimeout, "DTimeout", DEVICE),
         (Key::Pdin, "PDin", DEVICE),
+        (Key::Structure, "FS_IO", DEVICE),
         (Key::Mcount, "MCount", MASTER),
         (Key::SetSd, "setSD", MASTER),
         (Key::ChFAckReq, "ChFAckReq", MASTER),
@@ -141,6 +144,7 @@ impl Key {
         !matches!(
             self,
             Key::Reply
+                | Key::Structure
                 | Key::Event
                 | Key::Nsr
                 | Key::Mode
@@ -163,6 +167,7 @@ impl Key {
             Key::DcountI => "11.4.6 Table 33",
             Key::SdSet | Key::DcommErr | Key::Dtimeout => "11.4.6 Table 32, 11.5.3 Table 40",
             Key::Pdin => "11.3.3 Table 29",
+            Key::Structure => "12.1",
             Key::Mcount | Key::SetSd | Key::ChFAckReq => "11.4.6 Table 31, 11.5.2 Table 38",
             Key::Pdout => "11.3.2 Table 28",
             Key::PortNum => "11.4.5",
@@ -198,6 +203,10 @@ pub enum Expected {
     Live,
     /// All octets 0.
     Safe,
+    /// 0 in the bits the declared structure leaves as padding.
+    Padded,
+    /// The protocol record with the FSP_IO_StructCRC of the declared structure.
+    Structure,
     /// All octets 0 or as before the step: nothing of what came is used.
     Withheld,
     /// An SPDU with right signature.
