@@ -65,6 +65,17 @@ uint8_t fs_fsp_port(const struct fs_fsp *fsp)
     return fsp->authenticity[PORT];
 }
 
+int fs_fsp_back_to_box(const struct fs_fsp *fsp)
+{
+    static const uint8_t unassigned[AUTHENTCRC] = {0};
+    return memcmp(fsp->authenticity, unassigned, AUTHENTCRC) == 0;
+}
+
+int fs_fsp_armed(const struct fs_fsp *fsp)
+{
+    return (get16(fsp->protocol + TECHPARCRC) | get16(fsp->protocol + TECHPARCRC + 2)) != 0;
+}
+
 uint16_t fs_fsp_watchdog(const struct fs_fsp *fsp)
 {
     return get16(fsp->protocol + WATCHDOG);

@@ -26,6 +26,12 @@ const LIVENESS_SCL_CYCLES: u64 = 8;
 /// How long an Event to a deviating verify record is waited for.
 const EVENT_NS: u64 = 100_000_000;
 
+/// Index of Data Storage, Subindex of its DS_Command, and commands (base standard).
+const DATA_STORAGE: u16 = 0x0003;
+const DS_COMMAND: u8 = 1;
+const DOWNLOAD_START: u8 = 0x03;
+const DOWNLOAD_END: u8 = 0x04;
+
 /// What came of a case.
 #[derive(Debug)]
 pub struct Outcome {
@@ -261,6 +267,7 @@ impl<'s, 'd> Engine<'s, 'd> {
             Action::Partner(partner) => return self.partner(partner, before),
             Action::Power(on) => self.power(*on)?,
             Action::Parameterize(asked) => self.parameterize(asked)?,
+            Action::Download { armed } => self.download(*armed)?,
             Action::Write { index, subindex, data } => {
                 self.acyclic(Stimulus::Write { index: *index, subindex: *subindex, data: data.clone() })?;
             }
@@ -624,6 +631,25 @@ impl<'s, 'd> Engine<'s, 'd> {
                 self.session.link_mut().oracle.parameterized(now);
             }
         }
+        Ok(())
+    }
+
+    /// DS_Command DownloadStart; when it is taken the blocks and DownloadEnd, whatever is answered. The answer that stands
+    /// in the end is that to DownloadStart.
+    fn download(&mut self, armed: bool) -> Result<(), Stop> {
+        let command = |code| Stimulus::Write { index: DATA_STORAGE, subindex: DS_COMMAND, data: vec![code] };
+        let io_struct_crc = self.io_struct_crc()?;
+        self.acyclic(command(DOWNLOAD_START))?;
+        let started = self.session.reply.clone();
+        if started == Some(Reply::Written) {
+            let asked = Parameterize { record: Sent::None, armed, ..Parameterize::default() };
+            let (profile, mode) = (self.session.profile, self.session.setup().mode);
+            for (index, data) in parameterize::records(profile, &asked, mode, io_struct_crc) {
+                self.acyclic(Stimulus::Write { index, subindex: 0, data })?;
+            }
+            self.acyclic(command(DOWNLOAD_END))?;
+        }
+        self.session.reply = started;
         Ok(())
     }
 

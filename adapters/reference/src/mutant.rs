@@ -307,8 +307,6 @@ catalogue! {
         AuthenticityReadReversed "authenticity-read-reversed", "A.1 Table A.1":
             "FSP_Authenticity_1 is read back least significant octet first."
 
-        RecordTakenInOperate "record-taken-in-operate", "9.1.1":
-            "FSP_VerifyRecord starts the SCL in OPERATE as well."
         RecordOf24Octets "record-of-24-octets", "A.2.10":
             "An FSP_VerifyRecord with an octet too many is taken."
         RecordBitUnchecked "record-bit-unchecked", "11.5.7":

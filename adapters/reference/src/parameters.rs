@@ -225,7 +225,7 @@ impl Parameters {
                 whole(subindex)?;
                 let most = if self.is(Mutant::RecordOf24Octets) { VERIFY_OCTETS + 1 } else { VERIFY_OCTETS };
                 of_length(data, VERIFY_OCTETS, most)?;
-                before(operate && !self.is(Mutant::RecordTakenInOperate))?;
+                before(operate)?;
                 let data = data.get(..VERIFY_OCTETS).unwrap_or(data);
                 Ok(self.verify(data))
             }

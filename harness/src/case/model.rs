@@ -61,6 +61,11 @@ pub enum Action {
     Power(bool),
     /// FSP parameterization from the profile: authenticity and protocol record, then the verify record.
     Parameterize(Parameterize),
+    /// A Data Storage download of the blocks of the profile, as far as the FS-Device takes it.
+    Download {
+        /// FSP_TechParCRC is the one of armed operation.
+        armed: bool,
+    },
     /// A write of on-request data.
     Write {
         /// Index.
