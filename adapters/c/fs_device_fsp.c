@@ -216,7 +216,9 @@ fs_events fs_fsp_verify(const struct fs_fsp *fsp, const struct fs_device_type *t
 {
     const uint8_t *authenticity = record, *protocol = record + FS_AUTHENTICITY_OCTETS;
     fs_events events = 0;
-    if (memcmp(authenticity + AUTH_1, fsp->authenticity + AUTH_1, PORT - AUTH_1) != 0)
+    static const uint8_t by_default[PORT] = {0}; /* no SCL with it, E.5.2 */
+    if (memcmp(authenticity + AUTH_1, fsp->authenticity + AUTH_1, PORT - AUTH_1) != 0
+        || memcmp(authenticity + AUTH_1, by_default, PORT - AUTH_1) == 0)
         events |= FS_EVENT_AUTHENTICITY;
     if (authenticity[PORT] == 0 || authenticity[PORT] != fsp->authenticity[PORT])
         events |= FS_EVENT_PORT;
