@@ -126,6 +126,18 @@ fn the_embedded_cases_are_sound() {
 }
 
 #[rstest]
+#[case("{event: 0xB003 or B005}", "`0xB003 or B005` is no value of `event`: EventCodes such as `0xB003 or 0xB005`")]
+#[case("{event.type: Error or Fatal}", "`Error or Fatal` is no value of `event.type`: Notification, Warning, Error")]
+#[case("{reply: FSP_Prot 1 to 2}", "`FSP_Prot 1 to 2` is neither a known word")]
+#[case("{reply: contains 4001x}", "`contains 4001x` is neither a known word")]
+fn an_expectation_of_on_request_data_says_what_it_takes(#[case] expect: &str, #[case] sentence: &str) {
+    let steps = format!("      - parameterize: {{corrupt: 184}}\n        expect: {expect}\n");
+    let told = told(problems(&suite("", &steps)));
+    assert!(told.contains(sentence), "{told}");
+    assert!(told.contains("`184` is no bit of FSP_VerifyRecord, 0 to 183 are"), "{told}");
+}
+
+#[rstest]
 #[case("", true)]
 #[case("    sweep: {edition: [v1.1, iec2022]}\n", true)]
 #[case("    sweep: {edition: [iec2022]}\n", false)]
