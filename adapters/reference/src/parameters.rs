@@ -339,9 +339,9 @@ impl Parameters {
     fn verify(&self, record: &[u8]) -> Written {
         let mut record = record.to_vec();
         if self.is(Mutant::RecordBitUnchecked)
-            && let (Some(octet), stored) = (record.get_mut(10), self.authenticity.to_octets()[10])
+            && let Some(octet) = record.get_mut(10)
         {
-            *octet = *octet & !1 | stored & 1;
+            *octet = *octet & !1 | self.authenticity.to_octets()[10] & 1;
         }
         let (authenticity, protocol) = record.split_at(AUTHENTICITY_OCTETS.min(record.len()));
         let port = self.verify_authenticity(authenticity);
