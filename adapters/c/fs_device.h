@@ -27,9 +27,14 @@ extern "C" {
 
 enum fs_device_state { FS_DEVICE_OFF, FS_DEVICE_PREOPERATE, FS_DEVICE_OPERATE };
 
+/* Data Storage of the base standard: what DS_Command has begun. */
+enum fs_device_transfer { FS_NO_TRANSFER, FS_UPLOAD, FS_DOWNLOAD };
+
 struct fs_device {
     struct fs_device_type type;
     struct fs_fsp fsp; /* kept without supply */
+    enum fs_device_transfer transfer;
+    struct fs_fsp downloaded; /* what DownloadEnd makes of fsp */
     enum fs_device_state state;
     fs_events active; /* Events that have appeared and not yet disappeared */
     struct fs_device_scl scl;

@@ -65,6 +65,17 @@ uint8_t fs_fsp_port(const struct fs_fsp *fsp)
     return fsp->authenticity[PORT];
 }
 
+int fs_fsp_back_to_box(const struct fs_fsp *fsp)
+{
+    static const uint8_t unassigned[AUTHENTCRC] = {0};
+    return memcmp(fsp->authenticity, unassigned, AUTHENTCRC) == 0;
+}
+
+int fs_fsp_armed(const struct fs_fsp *fsp)
+{
+    return (get16(fsp->protocol + TECHPARCRC) | get16(fsp->protocol + TECHPARCRC + 2)) != 0;
+}
+
 uint16_t fs_fsp_watchdog(const struct fs_fsp *fsp)
 {
     return get16(fsp->protocol + WATCHDOG);
@@ -205,7 +216,9 @@ fs_events fs_fsp_verify(const struct fs_fsp *fsp, const struct fs_device_type *t
 {
     const uint8_t *authenticity = record, *protocol = record + FS_AUTHENTICITY_OCTETS;
     fs_events events = 0;
-    if (memcmp(authenticity + AUTH_1, fsp->authenticity + AUTH_1, PORT - AUTH_1) != 0)
+    static const uint8_t by_default[PORT] = {0}; /* no SCL with it, E.5.2 */
+    if (memcmp(authenticity + AUTH_1, fsp->authenticity + AUTH_1, PORT - AUTH_1) != 0
+        || memcmp(authenticity + AUTH_1, by_default, PORT - AUTH_1) == 0)
         events |= FS_EVENT_AUTHENTICITY;
     if (authenticity[PORT] == 0 || authenticity[PORT] != fsp->authenticity[PORT])
         events |= FS_EVENT_PORT;

@@ -41,6 +41,8 @@ enum fs_error_type {
     FS_OUT_OF_RANGE = 0x8030,
     FS_LENGTH_OVERRUN = 0x8033,
     FS_LENGTH_UNDERRUN = 0x8034,
+    FS_NO_FUNCTION = 0x8035,
+    FS_NO_FUNCTION_NOW = 0x8036,
     FS_INVALID_SET = 0x8040
 };
 
@@ -59,6 +61,9 @@ enum {
 
 /* Factory setting, Table G.1: no authenticity, no port, FSP_TechParCRC not 0. */
 void fs_fsp_factory(struct fs_fsp *fsp, const struct fs_device_type *type);
+
+int fs_fsp_back_to_box(const struct fs_fsp *fsp); /* authenticity and port are 0: nobody has assigned it yet */
+int fs_fsp_armed(const struct fs_fsp *fsp);       /* FSP_TechParCRC is not 0 */
 
 /* On-request data 0x4200 to 0x42FF. A read gives up to 32 octets. */
 enum fs_error_type fs_fsp_read(const struct fs_fsp *fsp, const struct fs_device_type *type, uint16_t index,

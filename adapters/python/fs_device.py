@@ -23,6 +23,7 @@ PORT = 1
 # ErrorTypes of the base standard
 INDEX_NOT_AVAILABLE = 0x8011
 SUBINDEX_NOT_AVAILABLE = 0x8012
+DEVICE_CONTROL = 0x8022
 ACCESS_DENIED = 0x8023
 OUT_OF_RANGE = 0x8030
 LENGTH_OVERRUN = 0x8033
@@ -255,6 +256,8 @@ class Protocol(NamedTuple):
     crc: int
 
 
+UPLOAD_START, UPLOAD_END, DOWNLOAD_START, DOWNLOAD_END, DS_BREAK = range(1, 6)  # DS_Command of the base standard
+
 AUTHENTICITY = struct.Struct(">IIBH")
 PROTOCOL = struct.Struct(">BBHHIH")
 
@@ -283,11 +286,39 @@ class Parameters:
         self.variant = variant
         self.authenticity = with_crc(struct.pack(">IIB", 0, 0, 0))
         self.protocol = with_crc(struct.pack(">BBHHI", 1, variant.mode, DEFAULT_WATCHDOG, variant.io_structure_crc, 1))
+        self.transfer = UPLOAD_END  # the DS_Command in effect
+        self.taken: dict[int, bytes] = {}  # blocks of a download, adopted at its end
 
     @property
     def armed(self) -> bool:
         """FSP_TechParCRC 0 means commissioning."""
         return Protocol(*PROTOCOL.unpack(self.protocol)).technology_crc != 0
+
+    @property
+    def in_use(self) -> bool:
+        """Assigned to a port: not as it came out of the box."""
+        return any(self.authenticity[:9])
+
+    def storage_command(self, octets: bytes) -> None:
+        """DS_Command: a device in use takes no download (11.7.6); it refuses with 0x8022 or, V1.1, ignores what comes."""
+        sized(octets, 1)
+        command = octets[0]
+        if not DS_BREAK >= command >= UPLOAD_START:
+            raise Refused(OUT_OF_RANGE)
+        if command == DOWNLOAD_START and self.in_use and self.variant.edition is Edition.IEC2022:
+            raise Refused(DEVICE_CONTROL)
+        if command == DOWNLOAD_END and self.transfer == DOWNLOAD_START and not self.in_use:
+            self.authenticity = self.taken.get(0x4200, self.authenticity)
+            self.protocol = self.taken.get(0x4201, self.protocol)
+        self.taken = {}
+        self.transfer = command
+
+    def storage(self) -> list[bytes]:
+        """State_Property, Data_Storage_Size, Parameter_Checksum and Index_List, which are Subindices 2 to 5."""
+        state = {UPLOAD_START: 0x02, DOWNLOAD_START: 0x04}.get(self.transfer, 0)
+        kept = self.authenticity + self.protocol
+        checksum = CRC32.of(kept).to_bytes(4, "big")
+        return [bytes([state]), (len(kept) + 8).to_bytes(4, "big"), checksum, bytes.fromhex("4200004201000000")]
 
     def write_authenticity(self, record: bytes) -> None:
         """Table A.1: port 0 is not accepted."""
@@ -296,7 +327,10 @@ class Parameters:
             raise Refused(OUT_OF_RANGE)
         if not block_right(record):
             raise Refused(INCONSISTENT)
-        self.authenticity = record
+        if self.transfer == DOWNLOAD_START:
+            self.taken[0x4200] = record
+        else:
+            self.authenticity = record
 
     def write_protocol(self, record: bytes) -> None:
         """Table A.1: version 1, the mode of the product, and a watchdog time. `verify` compares the structure."""
@@ -306,7 +340,10 @@ class Parameters:
             raise Refused(OUT_OF_RANGE)
         if not block_right(record):
             raise Refused(INCONSISTENT)
-        self.protocol = record
+        if self.transfer == DOWNLOAD_START:
+            self.taken[0x4201] = record
+        else:
+            self.protocol = record
 
     def verify(self, record: bytes) -> int | None:
         """The EventCode of the first deviation of an FSP_VerifyRecord (Annex B), or None.
@@ -383,6 +420,7 @@ class FsDevice(Dut):
         self.operate = False
         self.deviation: int | None = None  # EventCode of the FSP_VerifyRecord that was not accepted
         self.scl: Scl | None = None
+        self.parameters.transfer, self.parameters.taken = UPLOAD_END, {}
         self.shown: dict[Service, bytes | int] = {}
 
     def exchange(self, port: int, received: bytes | None) -> bytes | None:
@@ -445,6 +483,8 @@ class FsDevice(Dut):
         self.shown = outputs
 
     def read(self, index: int, subindex: int) -> bytes:
+        if index == 0x0003 and self.on and 2 <= subindex <= 5:
+            return self.parameters.storage()[subindex - 2]
         record = self.objects().get(index)
         if record is None:
             raise Refused(ACCESS_DENIED if self.writes(index) else INDEX_NOT_AVAILABLE)
@@ -462,6 +502,7 @@ class FsDevice(Dut):
             raise Unsupported
         records = {0x4200: self.parameters.authenticity, 0x4201: self.parameters.protocol}
         records[0x4212] = self.variant.description_crc
+        records[0x000C], records[0x000D] = bytes(2), bytes.fromhex("4001")  # no Device Access Lock; IO-Link Safety
         if self.variant.edition is Edition.IEC2022:
             records.update(TIMING)
         return records
@@ -472,7 +513,7 @@ class FsDevice(Dut):
         write = self.writes(index)
         if write is None:
             raise Refused(ACCESS_DENIED if readable else INDEX_NOT_AVAILABLE)
-        if subindex != 0:
+        if subindex != (1 if index == 0x0003 else 0):
             raise Refused(SUBINDEX_NOT_AVAILABLE)
         write(octets)
 
@@ -480,6 +521,7 @@ class FsDevice(Dut):
         """What can be written (Table A.1); the passwords are those of V1.1."""
         table = {
             0x0002: self.command,
+            0x0003: self.parameters.storage_command,
             0x4200: self.parameters.write_authenticity,
             0x4201: self.parameters.write_protocol,
             0x4202: self.verify,

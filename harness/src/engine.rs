@@ -29,6 +29,12 @@ const IO_STRUCT_CRC: &str = "FSP_IO_StructCRC";
 /// How long an Event to a deviating verify record is waited for.
 const EVENT_NS: u64 = 100_000_000;
 
+/// Index of Data Storage, Subindex of its DS_Command, and commands (base standard).
+const DATA_STORAGE: u16 = 0x0003;
+const DS_COMMAND: u8 = 1;
+const DOWNLOAD_START: u8 = 0x03;
+const DOWNLOAD_END: u8 = 0x04;
+
 /// What came of a case.
 #[derive(Debug)]
 pub struct Outcome {
@@ -267,6 +273,7 @@ impl<'s, 'd> Engine<'s, 'd> {
             Action::Partner(partner) => return self.partner(partner, before),
             Action::Power(on) => self.power(*on)?,
             Action::Parameterize(asked) => self.parameterize(asked)?,
+            Action::Download { armed } => self.download(*armed)?,
             Action::Write { index, subindex, data } => {
                 self.acyclic(Stimulus::Write { index: *index, subindex: *subindex, data: data.clone() })?;
             }
@@ -630,9 +637,13 @@ impl<'s, 'd> Engine<'s, 'd> {
         for (index, data) in parameterize::records(profile, asked, self.session.setup().mode, io_struct_crc) {
             self.session.acyclic(Stimulus::Write { index, subindex: 0, data })?;
             let written = self.session.reply == Some(Reply::Written);
-            if index == INDEX_VERIFY && !asked.starts {
+            if index == INDEX_VERIFY && asked.starts != Starts::Yes {
                 // Taken with an Event or refused, and a product may take its time to raise it.
                 self.session.pass(EVENT_NS)?;
+                if asked.starts == Starts::Open {
+                    // So far ahead that a start is never overdue.
+                    self.session.link_mut().oracle.parameterized(u64::MAX / 2);
+                }
             } else if !written {
                 let expected = format!("record 0x{index:04X} written");
                 let observed = self.session.replied();
@@ -643,6 +654,25 @@ impl<'s, 'd> Engine<'s, 'd> {
                 self.session.link_mut().oracle.parameterized(now);
             }
         }
+        Ok(())
+    }
+
+    /// DS_Command DownloadStart; when it is taken the blocks and DownloadEnd, whatever is answered. The answer that stands
+    /// in the end is that to DownloadStart.
+    fn download(&mut self, armed: bool) -> Result<(), Stop> {
+        let command = |code| Stimulus::Write { index: DATA_STORAGE, subindex: DS_COMMAND, data: vec![code] };
+        let io_struct_crc = self.io_struct_crc()?;
+        self.acyclic(command(DOWNLOAD_START))?;
+        let started = self.session.reply.clone();
+        if started == Some(Reply::Written) {
+            let asked = Parameterize { record: Sent::None, armed, ..Parameterize::default() };
+            let (profile, mode) = (self.session.profile, self.session.setup().mode);
+            for (index, data) in parameterize::records(profile, &asked, mode, io_struct_crc) {
+                self.acyclic(Stimulus::Write { index, subindex: 0, data })?;
+            }
+            self.acyclic(command(DOWNLOAD_END))?;
+        }
+        self.session.reply = started;
         Ok(())
     }
 

@@ -1,7 +1,8 @@
 //! Everything under `testcases/`: carried in the binary, or read from a folder.
 
 use crate::annex_i::{self, AnnexI};
-use crate::case::{self, Case, Covered, Start, Suite, model::Action, model::Step};
+use crate::case::model::{Action, Blocks, Starts, Step};
+use crate::case::{self, Case, Covered, Start, Suite};
 use crate::coverage::Coverage;
 use crate::ledger::{Class, Ledger};
 use crate::limits;
@@ -285,9 +286,11 @@ impl Library {
         };
         let mut found = Vec::new();
         let mut checks = false;
+        let mut passwords = false;
         for point in &expansion.points {
             let steps = case.steps(point, &mut found);
             checks |= steps.iter().any(expects);
+            passwords |= point.variant.edition == Edition::V1_1 && steps.iter().any(writes_password);
             if !found.is_empty() {
                 break;
             }
@@ -298,6 +301,10 @@ impl Library {
             problem(format!("case {} can never run: {why}", case.id));
         } else if found.is_empty() && !checks {
             problem(format!("case {} expects nothing", case.id));
+        }
+        if passwords {
+            let what = "writes 0x4210 or 0x4211, which are passwords in v1.1: it could lock the product";
+            problem(format!("case {} {what}; limit it by `edition: [iec2022]`", case.id));
         }
         let foreign = |covered: &&Covered| match covered {
             Covered::Scl(number) => (*number < 20) == (case.role == Role::Device),
@@ -319,6 +326,11 @@ pub static EVERYTHING: [Offer; 4] = [
     Offer { edition: Edition::Iec2022, mode: ProtMode::Crc32, pd_out: (0, 25), pd_in: (0, 25) },
 ];
 
+/// Whether a step writes an Index that is a password in v1.1 and something else in iec2022.
+fn writes_password(step: &Step) -> bool {
+    matches!(step.action, Action::Write { index: 0x4210 | 0x4211, .. })
+}
+
 /// Whether a step judges anything.
 fn expects(step: &Step) -> bool {
     let until = match &step.action {
@@ -334,8 +346,16 @@ pub fn needs(steps: &[Step]) -> impl Iterator<Item = Pco> + '_ {
     steps.iter().filter_map(|step| match step.action {
         Action::Power(_) => Some(Pco::Power),
         Action::App(_) => Some(Pco::App),
-        Action::Parameterize(ref asked) if !asked.starts || !asked.blocks || asked.armed => Some(Pco::Acyclic),
-        Action::Read { .. } | Action::Write { .. } | Action::Smi(_) | Action::Raise { .. } => Some(Pco::Acyclic),
+        Action::Parameterize(ref asked)
+            if asked.starts != Starts::Yes || asked.blocks != Blocks::Written || asked.armed =>
+        {
+            Some(Pco::Acyclic)
+        }
+        Action::Read { .. }
+        | Action::Write { .. }
+        | Action::Download { .. }
+        | Action::Smi(_)
+        | Action::Raise { .. } => Some(Pco::Acyclic),
         Action::Drive(_) | Action::Wake(_) | Action::Pass { after: Some(_), .. } => Some(Pco::Line),
         _ => None,
     })

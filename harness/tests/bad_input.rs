@@ -125,6 +125,31 @@ fn the_embedded_cases_are_sound() {
     assert_eq!(library.ledger.iter().count(), 1_139, "nothing of the ledger is dropped");
 }
 
+#[rstest]
+#[case("{event: 0xB003 or B005}", "`0xB003 or B005` is no value of `event`: EventCodes such as `0xB003 or 0xB005`")]
+#[case("{event.type: Error or Fatal}", "`Error or Fatal` is no value of `event.type`: Notification, Warning, Error")]
+#[case("{reply: FSP_Prot 1 to 2}", "`FSP_Prot 1 to 2` is neither a known word")]
+#[case("{reply: contains 4001x}", "`contains 4001x` is neither a known word")]
+fn an_expectation_of_on_request_data_says_what_it_takes(#[case] expect: &str, #[case] sentence: &str) {
+    let steps = format!("      - parameterize: {{corrupt: 184}}\n        expect: {expect}\n");
+    let told = told(problems(&suite("", &steps)));
+    assert!(told.contains(sentence), "{told}");
+    assert!(told.contains("`184` is no bit of FSP_VerifyRecord, 0 to 183 are"), "{told}");
+}
+
+#[rstest]
+#[case("", true)]
+#[case("    sweep: {edition: [v1.1, iec2022]}\n", true)]
+#[case("    sweep: {edition: [iec2022]}\n", false)]
+fn no_case_writes_the_passwords_of_v1_1(#[case] keys: &str, #[case] refused: bool) {
+    let mut library = Library::embedded().unwrap_or_else(|problems| panic!("{}", told(problems)));
+    let steps = "      - write: {index: 0x4211, data: 00 64}\n        expect: {reply: refused}\n";
+    library
+        .suites
+        .push(case::suite(&source(&suite(keys, steps))).unwrap_or_else(|problems| panic!("{}", told(problems))));
+    assert_eq!(told(library.check()).contains("which are passwords in v1.1"), refused);
+}
+
 #[test]
 fn a_misspelt_word_of_the_way_back_is_named_with_its_place() {
     let steps = "      - exchange: {image: 8 ago, MCount: bit 3}\n        expect: {SDset: 1}\n      - partner: {back: corupt}\n      - partner: {back: 0 ago, within: 3 parsecs}\n      - partner: {for: 20 ms}\n";

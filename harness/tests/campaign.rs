@@ -191,6 +191,16 @@ fn a_device_that_repeats_one_spdu_fails(#[values("random", "bits")] what: &str) 
     assert!(!told.contains("pass"), "{told}");
 }
 
+#[rstest]
+#[case("inproc:reference-device", 0, "pass: 68080 falsified records, none starts the SCL")]
+#[case("inproc:reference-device?mutant=record-bit-unchecked", 1, "fail: at record 88")]
+#[case("inproc:null-device", 5, "")]
+fn corruptions_of_the_verify_record(#[case] dut: &str, #[case] expected: i32, #[case] last: &str) {
+    let (code, told, errors) = campaign(&["record", "--dut", dut], &folder(&format!("record-{expected}")));
+    assert_eq!(code, expected, "{told}{errors}");
+    assert!(told.lines().last().unwrap_or_default().starts_with(last), "{told}");
+}
+
 #[test]
 fn one_seed_gives_one_result() {
     let run = |name: &str, seed: &str| {
@@ -216,6 +226,8 @@ fn one_seed_gives_one_result() {
 #[case(&["random", "--dut", "inproc:no-such"], 2)]
 #[case(&["random", "--dut", "tcp://127.0.0.1:1"], 3)]
 #[case(&["replay", "no/such/file"], 2)]
+#[case(&["record", "--dut", "inproc:reference-master"], 2)]
+#[case(&["record", "--flips", "0"], 2)]
 fn exit_codes_are_those_of_every_command(#[case] args: &[&str], #[case] expected: i32) {
     let (code, told, errors) = campaign(args, &folder(&format!("codes-{}", args.join("-").replace(['/', ':'], "-"))));
     assert_eq!(code, expected, "{told}{errors}");

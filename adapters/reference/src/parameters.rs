@@ -1,10 +1,12 @@
-//! The on-request data of the reference FS-Device: the Indices of Table A.1 and the checks at FSP_VerifyRecord.
+//! The on-request data of the reference FS-Device: the Indices of Table A.1, the reset commands (E.3.3; v1.1: E.3.2)
+//! and the checks at FSP_VerifyRecord.
 //!
 //! The authenticity and protocol blocks survive power cycles. The checks are the same whether FSP_TechParCRC is 0 or not:
 //! 11.5.7 lets no deviating block start the SCL, and Table E.2 (v1.1: E.3) no default authenticity. This device holds
 //! no technology parameters (FST), so their signature is compared with the stored one alone.
 
 use crate::Mutant;
+use crate::storage::{self, Blocks, Transfer};
 use fsct_adapters::Variant;
 use fsct_protocol::Edition;
 use fsct_protocol::crc::{crc16, crc32};
@@ -17,6 +19,8 @@ pub mod error_type {
     pub const INDEX_NOT_AVAILABLE: u16 = 0x8011;
     /// The Subindex does not exist.
     pub const SUBINDEX_NOT_AVAILABLE: u16 = 0x8012;
+    /// The service is not available at the moment, because the device controls itself.
+    pub const TEMPORARILY_UNAVAILABLE: u16 = 0x8022;
     /// Not readable, or not writable.
     pub const ACCESS_DENIED: u16 = 0x8023;
     /// A value is not permitted, or the signature of a block is wrong.
@@ -25,6 +29,8 @@ pub mod error_type {
     pub const LENGTH_OVERRUN: u16 = 0x8033;
     /// Fewer octets than the object has.
     pub const LENGTH_UNDERRUN: u16 = 0x8034;
+    /// The command does not exist.
+    pub const FUNCTION_NOT_AVAILABLE: u16 = 0x8035;
     /// Not in this state of the device.
     pub const FUNCTION_UNAVAILABLE: u16 = 0x8036;
     /// No communication: the device has no power.
@@ -51,8 +57,14 @@ pub mod event_code {
     pub const NO_VERIFY_RECORD: u16 = 0xB00A;
 }
 
-/// Indices of Table A.1 beside those of the FSP records.
+/// Indices of Table A.1 beside those of the FSP records, and of the base standard.
 mod index {
+    /// SystemCommand.
+    pub const SYSTEM_COMMAND: u16 = 0x0002;
+    /// Device Access Lock.
+    pub const ACCESS_LOCK: u16 = 0x000C;
+    /// ProfileCharacteristic.
+    pub const PROFILES: u16 = 0x000D;
     /// FS_Password (v1.1), FSP_TimeToReady (iec2022).
     pub const TIME_TO_READY: u16 = 0x4210;
     /// Reset_FS_Password (v1.1), FSP_MinShutDownTime (iec2022).
@@ -77,6 +89,8 @@ const MIN_SHUT_DOWN_TIME: u16 = 100;
 const WCDT_MS: u16 = 10;
 const OFDT_MS: u16 = 20;
 const PASSWORD_OCTETS: usize = 32;
+/// ProfileID of IO-Link Safety.
+const PROFILE_ID: u16 = 0x4001;
 /// Octets of each Subindex of 0x4200, from 1.
 const AUTHENTICITY_ITEMS: [usize; 4] = [4, 4, 1, 2];
 /// Octets of each Subindex of 0x4201, from 1.
@@ -113,6 +127,7 @@ pub struct Parameters {
     mutant: Option<Mutant>,
     authenticity: Authenticity,
     protocol: Protocol,
+    transfer: Transfer,
 }
 
 impl Parameters {
@@ -127,9 +142,15 @@ impl Parameters {
                 mode: variant.mode.code(),
                 watchdog_ms: DEFAULT_WATCHDOG_MS,
                 io_struct_crc: io_struct_crc(variant, mutant),
-                tech_par_crc: FACTORY_TECH_PAR_CRC,
+                tech_par_crc: if mutant == Some(Mutant::FactoryTechParCrc0) { 0 } else { FACTORY_TECH_PAR_CRC },
             },
+            transfer: Transfer::Inactive,
         }
+    }
+
+    /// The supply is gone: so is a transfer that was under way.
+    pub fn power_off(&mut self) {
+        self.transfer = Transfer::Inactive;
     }
 
     /// Reads an Index; Subindex 0 is the whole object.
@@ -162,13 +183,23 @@ impl Parameters {
                     false => item(&crc32(0, &described).to_be_bytes(), &[], subindex),
                 }
             }
+            index::TIME_TO_READY if edition == Edition::V1_1 && self.is(Mutant::PasswordReadable) => {
+                Ok(vec![0; PASSWORD_OCTETS])
+            }
             index::TIME_TO_READY | index::MIN_SHUT_DOWN_TIME if edition == Edition::V1_1 => {
                 Err(error_type::ACCESS_DENIED)
             }
+            index::MIN_SHUT_DOWN_TIME if self.is(Mutant::MinShutDownTimeShort) => item(&[0, 50], &[], subindex),
+            index::OFDT if self.is(Mutant::OfdtMissing) => Err(error_type::INDEX_NOT_AVAILABLE),
             index::TIME_TO_READY => item(&TIME_TO_READY.to_be_bytes(), &[], subindex),
             index::MIN_SHUT_DOWN_TIME => item(&MIN_SHUT_DOWN_TIME.to_be_bytes(), &[], subindex),
             index::WCDT if edition == Edition::Iec2022 => item(&WCDT_MS.to_be_bytes(), &[], subindex),
             index::OFDT if edition == Edition::Iec2022 => item(&OFDT_MS.to_be_bytes(), &[], subindex),
+            storage::INDEX => self.transfer.read(subindex, &self.blocks()),
+            index::SYSTEM_COMMAND => Err(error_type::ACCESS_DENIED),
+            index::ACCESS_LOCK => item(&[0, if self.is(Mutant::AccessLocked) { 2 } else { 0 }], &[], subindex),
+            index::PROFILES if self.is(Mutant::ProfileMissing) => item(&[0, 1], &[2], subindex),
+            index::PROFILES => item(&PROFILE_ID.to_be_bytes(), &[2], subindex),
             _ => Err(error_type::INDEX_NOT_AVAILABLE),
         }
     }
@@ -193,8 +224,10 @@ impl Parameters {
             INDEX_VERIFY if subindex != 0 && self.is(Mutant::RecordBySubindex) => Ok(Written::Nothing),
             INDEX_VERIFY => {
                 whole(subindex)?;
-                of_length(data, VERIFY_OCTETS, VERIFY_OCTETS)?;
+                let most = if self.is(Mutant::RecordOf24Octets) { VERIFY_OCTETS + 1 } else { VERIFY_OCTETS };
+                of_length(data, VERIFY_OCTETS, most)?;
                 before(operate)?;
+                let data = data.get(..VERIFY_OCTETS).unwrap_or(data);
                 Ok(self.verify(data))
             }
             index::TIME_TO_READY | index::MIN_SHUT_DOWN_TIME if self.variant.edition == Edition::V1_1 => {
@@ -204,6 +237,24 @@ impl Parameters {
                 if data.is_ascii() { Ok(Written::Nothing) } else { Err(error_type::VALUE_OUT_OF_RANGE) }
             }
             index::TIME_TO_READY if self.is(Mutant::TimeToReadyWritable) => Ok(Written::Nothing),
+            index::WCDT if self.is(Mutant::WcdtWritable) => Ok(Written::Nothing),
+            storage::INDEX if subindex == 1 => {
+                let (blocks, free) = (self.blocks(), self.back_to_box());
+                let adopted = self.transfer.command(only(data)?, self.variant.edition, blocks, free);
+                let adopted = adopted.map_err(|error| match error {
+                    error_type::TEMPORARILY_UNAVAILABLE if self.is(Mutant::DownloadRefusedOtherwise) => {
+                        error_type::FUNCTION_UNAVAILABLE
+                    }
+                    error => error,
+                })?;
+                Ok(adopted.map_or(Written::Nothing, |blocks| self.keep(blocks)))
+            }
+            index::SYSTEM_COMMAND => {
+                whole(subindex)?;
+                self.reset(only(data)?)?;
+                // A running SCL goes on with what was verified until the next start-up.
+                Ok(if operate { Written::Nothing } else { Written::Block })
+            }
             _ => {
                 self.read(index, subindex)?;
                 Err(error_type::ACCESS_DENIED)
@@ -217,8 +268,7 @@ impl Parameters {
         if block.port == 0 && !unassigned(&block) {
             return Err(error_type::VALUE_OUT_OF_RANGE);
         }
-        self.authenticity = block;
-        Ok(Written::Block)
+        Ok(self.take(|blocks| blocks.authenticity = block))
     }
 
     fn write_protocol(&mut self, data: &[u8]) -> Result<Written, u16> {
@@ -226,8 +276,61 @@ impl Parameters {
         if !self.supports(&block) || block.watchdog_ms == 0 {
             return Err(error_type::VALUE_OUT_OF_RANGE);
         }
-        self.protocol = block;
-        Ok(Written::Block)
+        Ok(self.take(|blocks| blocks.protocol = block))
+    }
+
+    /// Puts a block where it belongs: into the memory, or into the download under way.
+    fn take(&mut self, change: impl FnOnce(&mut Blocks)) -> Written {
+        match &mut self.transfer {
+            Transfer::Ignored => Written::Nothing,
+            Transfer::Download(_) if self.mutant == Some(Mutant::DownloadNotAdopted) => Written::Nothing,
+            Transfer::Download(blocks) => {
+                change(blocks);
+                Written::Nothing
+            }
+            Transfer::Inactive | Transfer::Upload => {
+                let mut blocks = self.blocks();
+                change(&mut blocks);
+                self.keep(blocks)
+            }
+        }
+    }
+
+    fn blocks(&self) -> Blocks {
+        Blocks { authenticity: self.authenticity, protocol: self.protocol }
+    }
+
+    fn keep(&mut self, blocks: Blocks) -> Written {
+        self.authenticity = blocks.authenticity;
+        self.protocol = blocks.protocol;
+        Written::Block
+    }
+
+    /// Whether nobody has assigned this device to a port yet.
+    fn back_to_box(&self) -> bool {
+        unassigned(&self.authenticity) && self.authenticity.port == 0 || self.is(Mutant::DownloadAdoptedInUse)
+    }
+
+    /// A SystemCommand: the resets of the edition, in commissioning alone. There are no technology parameters that an
+    /// application reset could change.
+    fn reset(&mut self, command: u8) -> Result<(), u16> {
+        let all = match (self.variant.edition, command) {
+            (Edition::V1_1, 0x82) | (Edition::Iec2022, 0x83) => true,
+            (Edition::Iec2022, 0x82) if self.is(Mutant::RestoreFactoryTaken) => true,
+            (Edition::Iec2022, 0x81) => self.is(Mutant::ApplicationResetForgets),
+            _ => return Err(error_type::FUNCTION_NOT_AVAILABLE),
+        };
+        if self.protocol.tech_par_crc != 0 && !self.is(Mutant::ResetWhenArmed) {
+            return Err(error_type::FUNCTION_UNAVAILABLE);
+        }
+        if all {
+            let authenticity = self.authenticity;
+            *self = Parameters::factory(self.variant, self.mutant);
+            if self.is(Mutant::ResetKeepsAuthenticity) {
+                self.authenticity = authenticity;
+            }
+        }
+        Ok(())
     }
 
     fn supports(&self, block: &Protocol) -> bool {
@@ -235,6 +338,12 @@ impl Parameters {
     }
 
     fn verify(&self, record: &[u8]) -> Written {
+        let mut record = record.to_vec();
+        if self.is(Mutant::RecordBitUnchecked)
+            && let Some(octet) = record.get_mut(10)
+        {
+            *octet = *octet & !1 | self.authenticity.to_octets()[10] & 1;
+        }
         let (authenticity, protocol) = record.split_at(AUTHENTICITY_OCTETS.min(record.len()));
         let port = self.verify_authenticity(authenticity);
         let watchdog_ms = self.verify_protocol(protocol);
@@ -256,6 +365,7 @@ impl Parameters {
             && (block.authenticity_2 == stored.authenticity_2 || self.is(Mutant::Authenticity2Unverified));
         let port_same = block.port == stored.port || self.is(Mutant::PortUnverified);
         match Port::new(stored.port).filter(|_| port_same) {
+            _ if !same && self.is(Mutant::AuthenticityEventOfPort) => Err(event_code::PORT),
             _ if !same || unassigned(&block) => Err(event_code::AUTHENTICITY),
             Some(port) => Ok(port),
             None => Err(event_code::PORT),
@@ -291,6 +401,9 @@ impl Parameters {
             Some(Mutant::ModeUnverified) => Protocol { mode: stored.mode, ..block },
             Some(Mutant::WatchdogUnverified) => Protocol { watchdog_ms: stored.watchdog_ms, ..block },
             Some(Mutant::IoStructCrcUnverified) => Protocol { io_struct_crc: stored.io_struct_crc, ..block },
+            Some(Mutant::TestModeTakesAll) if block.tech_par_crc == 0 => {
+                Protocol { tech_par_crc: stored.tech_par_crc, ..block }
+            }
             Some(Mutant::TechParCrcUnverified) => Protocol { tech_par_crc: stored.tech_par_crc, ..block },
             _ => block,
         }
@@ -337,6 +450,12 @@ fn block(subindex: u8, data: &[u8], items: &[usize]) -> Result<(), u16> {
 
 fn whole(subindex: u8) -> Result<(), u16> {
     if subindex == 0 { Ok(()) } else { Err(error_type::SUBINDEX_NOT_AVAILABLE) }
+}
+
+/// The one octet of a command.
+fn only(data: &[u8]) -> Result<u8, u16> {
+    of_length(data, 1, 1)?;
+    data.first().copied().ok_or(error_type::LENGTH_UNDERRUN)
 }
 
 fn of_length(data: &[u8], least: usize, most: usize) -> Result<(), u16> {

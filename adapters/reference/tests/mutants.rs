@@ -6,7 +6,7 @@ mod common;
 use common::*;
 use fsct_adapters::{Line, Observation, Octets, Service, Stimulus, Variant};
 use fsct_protocol::crc::crc16;
-use fsct_protocol::fsp::Protocol;
+use fsct_protocol::fsp::{Authenticity, Protocol};
 use fsct_protocol::spdu::Status;
 use fsct_protocol::{Edition, ProtMode};
 use fsct_reference::{Mutant, Options};
@@ -196,6 +196,7 @@ fn life(variant: Variant, options: Options) -> Vec<Observation> {
     life.exchanges();
     life.timers();
     life.lines();
+    life.requests();
     life.seen
 }
 
@@ -266,6 +267,51 @@ impl Life {
             self.power_cycle();
         }
         self.write(0x4202, &right);
+    }
+
+    /// Indices, resets and Data Storage, from the factory on and armed.
+    fn requests(&mut self) {
+        self.power_cycle();
+        for tech_par_crc in [0, 1] {
+            self.bench.commission(tech_par_crc);
+            let right = [&authenticity().to_octets()[..], &self.bench.protocol().to_octets()[..]].concat();
+            self.write(0x4202, &[&right[..], &[0]].concat());
+            for command in 0x80..=0x83 {
+                self.write(0x0002, &[command]);
+                self.read_all();
+            }
+        }
+        let authenticity = authenticity().to_octets();
+        for reset in [true, false] {
+            if reset {
+                let tested = Protocol { tech_par_crc: 0, ..self.bench.protocol() };
+                self.write(0x4201, &tested.to_octets());
+                [0x82, 0x83].into_iter().for_each(|command| self.write(0x0002, &[command]));
+            }
+            let storage = |code: u8| Stimulus::Write { index: 0x0003, subindex: 1, data: vec![code] };
+            self.apply(storage(0x03));
+            self.write(0x4200, &authenticity);
+            self.apply(storage(0x04));
+            self.read_all();
+        }
+        self.write(0x4200, &Authenticity::default().to_octets());
+        self.bench.commission(1);
+        let tested = Protocol { tech_par_crc: 0, ..self.bench.protocol() };
+        self.write(0x4202, &[&authenticity[..], &tested.to_octets()[..]].concat());
+        self.out(m(0));
+        self.power_cycle();
+        let mut falsified = [&authenticity[..], &self.bench.protocol().to_octets()[..]].concat();
+        falsified[10] ^= 1;
+        self.write(0x4202, &falsified);
+        self.out(m(0));
+        self.power_cycle();
+    }
+
+    fn read_all(&mut self) {
+        for index in [0x000C, 0x000D, 0x4200, 0x4201, 0x4210, 0x4211, 0x4213, 0x4214] {
+            self.apply(Stimulus::Read { index, subindex: 0 });
+        }
+        self.write(0x4213, &[0, 1]);
     }
 
     /// Woken up in time, left alone until OSSDe operation, and a demand there.

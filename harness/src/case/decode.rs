@@ -31,12 +31,13 @@ const BACKS: &[(Back, &str)] = &[
     (Back::Late, "late"),
 ];
 /// The words for the action of a step, and the side they are for.
-const ACTIONS: [(&str, &[Role]); 17] = [
+const ACTIONS: [(&str, &[Role]); 18] = [
     ("exchange", &[Role::Device, Role::Master]),
     ("wait", &[Role::Device, Role::Master]),
     ("partner", &[Role::Device, Role::Master]),
     ("power", &[Role::Device, Role::Master]),
     ("parameterize", &[Role::Device]),
+    ("download", &[Role::Device]),
     ("write", &[Role::Device]),
     ("read", &[Role::Device]),
     ("app", &[Role::Device, Role::Master]),
@@ -125,6 +126,7 @@ impl Decoder<'_> {
             "partner" => Some(self.partner(node)),
             "power" => self.word(node, &[(Action::Power(true), "on"), (Action::Power(false), "off")], "power"),
             "parameterize" => Some(Action::Parameterize(self.parameterize(node))),
+            "download" => Some(self.download(node)),
             "write" | "read" => self.acyclic(word, node),
             "app" => Some(self.app(node)),
             "configure" => Some(self.configure(node)),

@@ -5,10 +5,10 @@ mod parameters;
 mod port;
 mod spdu;
 
-pub use expect::{Declared, Expectation, Expected, Key, Outcome};
+pub use expect::{Declared, EVENT_TYPES, Expectation, Expected, Key, Outcome};
 use fsct_adapters::{Line, Service};
 use fsct_lines::{Claim, Quantity};
-pub use parameters::{Parameterize, RecordField};
+pub use parameters::{Blocks, Parameterize, RecordField, Sent, Starts};
 pub use port::{Answered, Configure, Connect, ERRORS, Smi, Until, Value, blocks};
 pub use spdu::{Back, Corrupt, Count, Data, Exchange, Field, Image, KEPT, PortNum, Signature};
 use std::ops::Range;
@@ -61,6 +61,11 @@ pub enum Action {
     Power(bool),
     /// FSP parameterization from the profile: authenticity and protocol record, then the verify record.
     Parameterize(Parameterize),
+    /// A Data Storage download of the blocks of the profile, as far as the FS-Device takes it.
+    Download {
+        /// FSP_TechParCRC is the one of armed operation.
+        armed: bool,
+    },
     /// A write of on-request data.
     Write {
         /// Index.

@@ -2,6 +2,7 @@
 
 mod bits;
 mod random;
+mod record;
 mod replay;
 
 use super::bench;
@@ -37,6 +38,8 @@ enum What {
     Bits(bits::Args),
     /// Random faults of all classes between random inputs of the application
     Random(random::Args),
+    /// Every corruption of FSP_VerifyRecord with so many bits inverted, each at a start-up of an armed FS-Device
+    Record(record::Args),
     /// Carry a list of actions out that a campaign has written
     Replay(replay::Args),
 }
@@ -92,6 +95,7 @@ pub fn run(args: &Args) -> u8 {
     let done = match &args.what {
         What::Bits(args) => bits::run(args),
         What::Random(args) => random::run(args),
+        What::Record(args) => record::run(args),
         What::Replay(args) => replay::run(args),
     };
     done.unwrap_or_else(|code| code)

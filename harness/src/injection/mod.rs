@@ -10,6 +10,7 @@ pub mod corruption;
 pub mod exhaustive;
 pub mod finding;
 pub mod random;
+pub mod record;
 pub mod shrink;
 pub mod stage;
 

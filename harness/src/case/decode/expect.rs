@@ -55,6 +55,17 @@ impl Decoder<'_> {
         if key == Key::Result {
             return self.results(text, at).map(Expected::Results);
         }
+        if key == Key::EventType {
+            return self.types(text, at).map(Expected::Types);
+        }
+        if key == Key::Event && text.contains(" or ") {
+            return self.events(text, at);
+        }
+        if key == Key::Reply
+            && let Some(expected) = reply(text)
+        {
+            return Some(expected);
+        }
         let (words, most, octets) = values(key);
         let found = words.iter().find(|(_, word)| *word == text).map(|(value, _)| value.clone());
         let found = found.or_else(|| number.filter(|n| most.is_some_and(|most| *n <= most)).map(Expected::Number));
@@ -69,6 +80,33 @@ impl Decoder<'_> {
             self.problem(at, format!("`{text}` is no value of `{}`: {}", key.name(), known.join(", ")));
         }
         found
+    }
+
+    /// EventCodes with ` or ` between, `none` among them.
+    fn events(&mut self, text: &str, at: &Range<usize>) -> Option<Expected> {
+        let codes: Option<Vec<u16>> = text
+            .split(" or ")
+            .filter(|word| *word != "none")
+            .map(|word| u16::from_str_radix(word.strip_prefix("0x")?, 16).ok())
+            .collect();
+        if codes.is_none() {
+            self.problem(
+                at,
+                format!("`{text}` is no value of `event`: EventCodes such as `0xB003 or 0xB005`, or `none`"),
+            );
+        }
+        codes.map(|codes| Expected::Events(text.split(" or ").any(|word| word == "none"), codes))
+    }
+
+    /// Types of Events with ` or ` between.
+    fn types(&mut self, text: &str, at: &Range<usize>) -> Option<Vec<u8>> {
+        let types = text.split(" or ").map(|word| EVENT_TYPES.iter().find(|(_, known)| *known == word));
+        let types: Option<Vec<u8>> = types.map(|found| found.map(|(number, _)| *number)).collect();
+        if types.is_none() {
+            let known = EVENT_TYPES.map(|(_, word)| word).join(", ");
+            self.problem(at, format!("`{text}` is no value of `event.type`: {known}, several with ` or ` between"));
+        }
+        types
     }
 
     /// `positive`, `negative` or errors by name, several of them with ` or ` between.
@@ -93,6 +131,23 @@ impl Decoder<'_> {
         }
         Some(found)
     }
+}
+
+/// `4 octets`, `1 to 32767`, `FSP_TechParCRC 1 to 65535` or `contains 40 01`; `None`: something else.
+fn reply(text: &str) -> Option<Expected> {
+    if let Some(octets) = text.strip_suffix(" octets") {
+        return octets.parse().ok().map(Expected::Count);
+    }
+    if let Some(entry) = text.strip_prefix("contains ") {
+        let octets: Option<Vec<u8>> = entry.split(' ').map(|octet| u8::from_str_radix(octet, 16).ok()).collect();
+        return octets.map(Expected::Contains);
+    }
+    let (least, most) = text.split_once(" to ")?;
+    let (field, least) = match least.rsplit_once(' ') {
+        Some((name, least)) => (Some(RecordField::ALL.iter().find(|field| field.name == name)?), least),
+        None => (None, least),
+    };
+    Some(Expected::Range(field, least.parse().ok()?, most.parse().ok()?))
 }
 
 type Words = &'static [(Expected, &'static str)];
@@ -152,15 +207,13 @@ fn values(key: Key) -> (Words, Option<u32>, bool) {
                 (Expected::Refused, "refused"),
                 (Expected::Configured, "authenticity"),
                 (Expected::Structure, "structure"),
-                (Expected::Count(2), "2 octets"),
-                (Expected::Count(4), "4 octets"),
-                (Expected::Count(12), "12 octets"),
                 (Expected::Declared(Declared::Protocol), "iodd.FSP_Protocol"),
                 (Expected::Declared(Declared::TimeToReady), "iodd.FSP_TimeToReady"),
                 (Expected::Declared(Declared::MinShutDownTime), "iodd.FSP_MinShutDownTime"),
                 (Expected::Declared(Declared::ParamDescCrc), "iodd.FSP_ParamDescCRC"),
                 (Expected::Declared(Declared::Wcdt), "iodd.FSP_WCDT"),
                 (Expected::Declared(Declared::Ofdt), "iodd.FSP_OFDT"),
+                (Expected::Unlocked, "unlocked"),
             ],
             None,
             true,
@@ -175,7 +228,7 @@ fn values(key: Key) -> (Words, Option<u32>, bool) {
             true,
         ),
         Key::Field(_) => (&[(Expected::Configured, "configured")], Some(u32::MAX), false),
-        Key::Result => (&[], None, false),
+        Key::Result | Key::EventType => (&[], None, false),
     }
 }
 

@@ -1,5 +1,6 @@
 //! What a case expects to see, and where.
 
+use super::RecordField;
 use fsct_adapters::{Mode, Role};
 
 /// One thing to be seen.
@@ -86,6 +87,8 @@ pub enum Key {
     Field(&'static str),
     /// EventCode seen in this step.
     Event,
+    /// Type of the Events seen in this step.
+    EventType,
 }
 
 const DEVICE: &[Role] = &[Role::Device];
@@ -94,7 +97,7 @@ const BOTH: &[Role] = &[Role::Device, Role::Master];
 
 impl Key {
     /// All keys as written in cases, and the side they are for; fields of ArgBlocks are `block.` and their name.
-    pub const ALL: [(Key, &'static str, &'static [Role]); 34] = [
+    pub const ALL: [(Key, &'static str, &'static [Role]); 35] = [
         (Key::DcountI, "DCount_i", DEVICE),
         (Key::SdSet, "SDset", DEVICE),
         (Key::DcommErr, "DCommErr", DEVICE),
@@ -129,6 +132,7 @@ impl Key {
         (Key::Length, "ArgBlockLength", MASTER),
         (Key::Block, "block", MASTER),
         (Key::Event, "event", BOTH),
+        (Key::EventType, "event.type", BOTH),
     ];
 
     /// As written in cases; a field of an ArgBlock by its name.
@@ -146,6 +150,7 @@ impl Key {
             Key::Reply
                 | Key::Structure
                 | Key::Event
+                | Key::EventType
                 | Key::Nsr
                 | Key::Mode
                 | Key::PortPower
@@ -183,7 +188,7 @@ impl Key {
             Key::Reply => "A.1 Table A.1",
             Key::Result | Key::Reference | Key::Length => "10.2",
             Key::Block | Key::Field(_) => "10.3",
-            Key::Event => "Annex B",
+            Key::Event | Key::EventType => "Annex B",
         }
     }
 }
@@ -221,6 +226,16 @@ pub enum Expected {
     Count(usize),
     /// What the IODD given by `--iodd` declares of this object.
     Declared(Declared),
+    /// A number from the first to the second, or a field of an FSP record that was read with such a number.
+    Range(Option<&'static RecordField>, u32, u32),
+    /// A list of entries, this one among them.
+    Contains(Vec<u8>),
+    /// Device Access Lock without the bits 0 and 1, or none at all.
+    Unlocked,
+    /// One of these EventCodes and no other; `true`: or none.
+    Events(bool, Vec<u16>),
+    /// EventQualifiers of one of these types (base standard: bits 5 and 4).
+    Types(Vec<u8>),
     /// A mode.
     Mode(Mode),
     /// What was configured.
@@ -236,6 +251,9 @@ pub enum Expected {
     /// One of these results.
     Results(Vec<Outcome>),
 }
+
+/// Types of Events: bits 5 and 4 of an EventQualifier of the base standard.
+pub const EVENT_TYPES: [(u8, &str); 3] = [(1, "Notification"), (2, "Warning"), (3, "Error")];
 
 /// The result of a service.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]

@@ -45,7 +45,7 @@ pub struct Args {
     common: Common,
 }
 
-fn range(text: &str) -> Result<RangeInclusive<usize>, String> {
+pub(super) fn range(text: &str) -> Result<RangeInclusive<usize>, String> {
     let (from, upto) = text.split_once("..").unwrap_or((text, text));
     let upto = upto.strip_prefix('=').unwrap_or(upto);
     let range = from.parse().ok().zip(upto.parse().ok()).map(|(from, upto)| from..=upto);
