@@ -100,18 +100,18 @@ impl<'s, 'd> Engine<'s, 'd> {
             Role::Device => "liveness: a conformant FS-Master restores operation".to_owned(),
             Role::Master => "liveness: a conformant FS-Device and an operator restore operation".to_owned(),
         };
-        let went = self.block(name, |engine| engine.start(start)).and_then(|()| {
+        let went = self.block(name, Vec::new(), |engine| engine.start(start)).and_then(|()| {
             for (index, step) in steps.iter().enumerate() {
                 self.step = index + 1;
-                self.block(step.text.clone(), |engine| engine.step(step))?;
+                self.block(step.text.clone(), step.activities.clone(), |engine| engine.step(step))?;
             }
             self.step = steps.len() + 1;
-            self.block(liveness, Engine::liveness)
+            self.block(liveness, Vec::new(), Engine::liveness)
         });
         if let Err(Stopped) = went {
             for step in steps.iter().skip(self.outcome.steps.len().saturating_sub(1)) {
-                let record =
-                    StepRecord { text: step.text.clone(), executed: false, entries: (0, 0), checks: Vec::new() };
+                let (text, activities) = (step.text.clone(), step.activities.clone());
+                let record = StepRecord { text, activities, executed: false, entries: (0, 0), checks: Vec::new() };
                 self.outcome.steps.push(record);
             }
         }
@@ -124,10 +124,12 @@ impl<'s, 'd> Engine<'s, 'd> {
     fn block(
         &mut self,
         text: String,
+        activities: Vec<u16>,
         action: impl FnOnce(&mut Engine<'s, 'd>) -> Result<(), Stop>,
     ) -> Result<(), Stopped> {
         let first = self.session.recorded();
-        self.outcome.steps.push(StepRecord { text, executed: true, entries: (first, first), checks: Vec::new() });
+        let entries = (first, first);
+        self.outcome.steps.push(StepRecord { text, activities, executed: true, entries, checks: Vec::new() });
         self.session.events.clear();
         self.session.links.iter_mut().for_each(Link::begin);
         let result = action(self);

@@ -8,6 +8,7 @@ use crate::matrix::{self, Matrix};
 use crate::oracle::Tolerances;
 use crate::problem::{Problem, Source, suggestion};
 use crate::profile::Profile;
+use crate::scenario::Scenarios;
 use crate::yaml;
 use fsct_adapters::{Offer, Pco, Role};
 use fsct_protocol::{Edition, ProtMode};
@@ -22,7 +23,7 @@ fn embedded_sources() -> Vec<Arc<Source>> {
     EMBEDDED.iter().map(source).collect()
 }
 
-/// Suites, start conditions, ledger, error matrix, tolerances, limits and profiles.
+/// Suites, start conditions, ledger, error matrix, scenarios, tolerances, limits and profiles.
 #[derive(Debug)]
 pub struct Library {
     /// Suites by name.
@@ -33,6 +34,8 @@ pub struct Library {
     pub ledger: Ledger,
     /// The error matrix; cases of one's own do without.
     pub matrix: Option<Matrix>,
+    /// The scenarios of Annex G; cases of one's own do without.
+    pub scenarios: Option<Scenarios>,
     /// Tolerances.
     pub tolerances: Tolerances,
     /// Times and electrical limits; cases of one's own do without.
@@ -105,6 +108,7 @@ impl Library {
         let mut starts = Vec::new();
         let mut ledger = Ledger::default();
         let mut matrix = None;
+        let mut scenarios = None;
         let mut tolerances = None;
         let mut limits = limits::Table::default();
         let mut profiles = BTreeMap::new();
@@ -128,13 +132,16 @@ impl Library {
                 (_, "error-matrix.yaml") => {
                     gather(Matrix::parse(source), &mut problems, |found| matrix = Some(found));
                 }
+                (_, "scenarios.yaml") => {
+                    gather(Scenarios::parse(source), &mut problems, |found| scenarios = Some(found));
+                }
                 (_, "tolerances.yaml") => {
                     gather(Tolerances::parse(source), &mut problems, |found| tolerances = Some(found));
                 }
                 (_, "limits.yaml") => gather(limits::parse(source), &mut problems, |found| limits = found),
                 _ => {
                     problems.push(Problem::without_place(&source.name, "is in no known place").help(
-                        "known are requirements/, suites/, profiles/, coverage/, starts.yaml, error-matrix.yaml, tolerances.yaml and limits.yaml",
+                        "known are requirements/, suites/, profiles/, coverage/, starts.yaml, error-matrix.yaml, scenarios.yaml, tolerances.yaml and limits.yaml",
                     ))
                 }
             }
@@ -143,7 +150,7 @@ impl Library {
         suites.sort_by_key(|suite: &Suite| suite.group.as_deref() == Some(matrix::GROUP));
         match tolerances {
             Some(tolerances) if problems.is_empty() => {
-                Ok(Library { suites, starts, ledger, matrix, tolerances, limits, profiles, coverage })
+                Ok(Library { suites, starts, ledger, matrix, scenarios, tolerances, limits, profiles, coverage })
             }
             Some(_) => Err(problems),
             None => {
@@ -233,6 +240,17 @@ impl Library {
                 for suite in self.suites.iter().filter(|suite| suite.group.as_deref() == Some(matrix::GROUP)) {
                     let message = format!("suite `{}` belongs to an error matrix, but there is none", suite.name);
                     problems.push(Problem::without_place("testcases/error-matrix.yaml", message));
+                }
+            }
+        }
+        match &self.scenarios {
+            Some(scenarios) => scenarios.check(&self.suites, &mut problems),
+            None => {
+                for case in self.cases() {
+                    let Some((id, at)) = &case.scenario else { continue };
+                    let message = format!("case {} names the scenario `{id}`, but there are none", case.id);
+                    let remedy = "scenarios stand in testcases/scenarios.yaml";
+                    problems.push(Problem::new(&case.source, at.clone(), message).help(remedy));
                 }
             }
         }

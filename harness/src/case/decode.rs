@@ -92,7 +92,8 @@ impl Decoder<'_> {
         let expect = fields.get("expect");
         let remark = fields.get("remark");
         let measure = fields.get("measure");
-        let _note = fields.optional("note");
+        let noted = fields.optional("note").is_some();
+        let numbers = fields.texts("activity");
         fields.finish(self.problems);
         let at = match &node.value {
             Value::Map(entries) => entries.first().map_or(node.at.clone(), |(key, _)| key.at.clone()),
@@ -114,8 +115,17 @@ impl Decoder<'_> {
         let expect = expect.map(|node| self.expectations(node)).unwrap_or_default();
         let remark = remark.map(|node| self.expectations(node)).unwrap_or_default();
         let measure = measure.map(|node| self.wanted(node)).unwrap_or_default();
+        let activities = numbers.into_iter().filter_map(|number| self.activity(number)).collect();
         let port = port.unwrap_or(1) as u8;
-        Some(Step { text: crate::yaml::flow(node), at, port, action, expect, remark, measure })
+        Some(Step { activities, noted, text: crate::yaml::flow(node), at, port, action, expect, remark, measure })
+    }
+
+    fn activity(&mut self, (text, at): Placed) -> Option<u16> {
+        let number = text.parse().ok().filter(|number| (1..=99).contains(number));
+        if number.is_none() {
+            self.problem(&at, format!("`{text}` is no number of an activity, from 1 to 99"));
+        }
+        number
     }
 
     fn action(&mut self, word: &str, node: &Node) -> Option<Action> {

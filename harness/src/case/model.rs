@@ -9,7 +9,7 @@ pub use expect::{Expectation, Expected, Key, Outcome};
 use fsct_adapters::{Line, Service};
 use fsct_lines::{Claim, Quantity};
 pub use parameters::{Parameterize, RecordField};
-pub use port::{Answered, Configure, Connect, ERRORS, Smi, Until, Value, blocks};
+pub use port::{Answered, Assigned, Configure, Connect, ERRORS, Smi, Specimen, Transfer, Until, Value, blocks};
 pub use spdu::{Back, Corrupt, Count, Data, Exchange, Field, Image, KEPT, PortNum, Signature};
 use std::ops::Range;
 
@@ -20,6 +20,10 @@ pub struct Step {
     pub text: String,
     /// Where it stands in its file.
     pub at: Range<usize>,
+    /// Activities of the scenario of its case that it is about.
+    pub activities: Vec<u16>,
+    /// Whether a note for the reader stands at it.
+    pub noted: bool,
     /// Port of an FS-Master it is about, from 1.
     pub port: u8,
     /// What is done.

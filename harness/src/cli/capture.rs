@@ -96,6 +96,7 @@ fn execute(args: &Args) -> Result<u8, u8> {
         tolerances: BTreeMap::new(),
         machines: Vec::new(),
         matrix: Vec::new(),
+        scenarios: Vec::new(),
     };
     let interrupted = AtomicBool::new(false);
     let run = Run {

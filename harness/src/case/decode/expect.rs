@@ -55,6 +55,14 @@ impl Decoder<'_> {
         if key == Key::Result {
             return self.results(text, at).map(Expected::Results);
         }
+        if key == Key::DataStorage {
+            return self.transfers(text, at).map(Expected::Transfers);
+        }
+        if matches!(key, Key::Field(_))
+            && let Some(number) = text.strip_prefix("not ").and_then(|number| number.parse().ok())
+        {
+            return Some(Expected::Not(number));
+        }
         let (words, most, octets) = values(key);
         let found = words.iter().find(|(_, word)| *word == text).map(|(value, _)| value.clone());
         let found = found.or_else(|| number.filter(|n| most.is_some_and(|most| *n <= most)).map(Expected::Number));
@@ -93,7 +101,27 @@ impl Decoder<'_> {
         }
         Some(found)
     }
+
+    /// `none`, `upload`, `download` or `refused`, several of them with ` or ` between.
+    fn transfers(&mut self, text: &str, at: &Range<usize>) -> Option<Vec<Transfer>> {
+        let found: Option<Vec<Transfer>> = text
+            .split(" or ")
+            .map(|word| TRANSFERS.iter().find(|(_, known)| *known == word).map(|entry| entry.0))
+            .collect();
+        if found.is_none() {
+            let known: Vec<&str> = TRANSFERS.iter().map(|entry| entry.1).collect();
+            self.problem(at, format!("`{text}` is no value of `data-storage`: {}", known.join(", ")));
+        }
+        found
+    }
 }
+
+const TRANSFERS: &[(Transfer, &str)] = &[
+    (Transfer::None, "none"),
+    (Transfer::Upload, "upload"),
+    (Transfer::Download, "download"),
+    (Transfer::Refused, "refused"),
+];
 
 type Words = &'static [(Expected, &'static str)];
 
@@ -143,7 +171,15 @@ fn values(key: Key) -> (Words, Option<u32>, bool) {
             false,
         ),
         Key::WakeUp => (&[], Some(1_000), false),
-        Key::Record => (&[(Expected::Configured, "configured"), (Expected::None, "none")], None, true),
+        Key::Record => (
+            &[
+                (Expected::Configured, "configured"),
+                (Expected::None, "none"),
+                (Expected::Right, "before OPERATE"),
+            ],
+            None,
+            true,
+        ),
         Key::Reply => (
             &[
                 (Expected::Written, "written"),
@@ -166,7 +202,8 @@ fn values(key: Key) -> (Words, Option<u32>, bool) {
             true,
         ),
         Key::Field(_) => (&[(Expected::Configured, "configured")], Some(u32::MAX), false),
-        Key::Result => (&[], None, false),
+        Key::Stored => (&[(Expected::Configured, "configured"), (Expected::Unchanged, "unchanged")], None, false),
+        Key::Result | Key::DataStorage => (&[], None, false),
     }
 }
 
