@@ -18,6 +18,7 @@ pub fn header(planned: usize) -> Header {
         tolerances: BTreeMap::from([("A19".into(), "T29 read sequentially (tolerated)".into())]),
         machines: Vec::new(),
         matrix: Vec::new(),
+        scenarios: Vec::new(),
     }
 }
 
@@ -68,6 +69,7 @@ pub fn passed(number: usize) -> CaseRecord {
         dut: 0,
         role: "device".into(),
         title: "Start-up of both sides".into(),
+        scenario: String::new(),
         place: "testcases/suites/device-startup.yaml:4".into(),
         sweep: vec![("edition".into(), "iec2022".into()), ("mode".into(), "crc16".into()), ("pd".into(), "1".into())],
         variant: VariantInfo {
@@ -90,9 +92,10 @@ pub fn passed(number: usize) -> CaseRecord {
         walked: Walked::default(),
         start: "waiting".into(),
         steps: vec![
-            StepRecord { text: "start: waiting".into(), executed: true, entries: (0, 1), checks: Vec::new() },
+            StepRecord { text: "start: waiting".into(), activities: Vec::new(), executed: true, entries: (0, 1), checks: Vec::new() },
             StepRecord {
                 text: "exchange: {MCount: 1}".into(),
+                activities: Vec::new(),
                 executed: true,
                 entries: (1, 3),
                 checks: vec![Check { key: "DCount_i".into(), expected: "6".into(), observed: "6".into(), met: true }],
