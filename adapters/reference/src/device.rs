@@ -162,6 +162,7 @@ impl FsDevice {
             seen.push_line(Line::Power, false);
             self.off_since = Some(self.now);
         }
+        self.parameters.power_off();
         if self.options.mutant == Some(Mutant::BlocksLostAtPowerOff) {
             self.parameters = Parameters::factory(self.variant, self.options.mutant);
         }

@@ -12,6 +12,7 @@ mod mutant;
 mod options;
 pub mod parameters;
 pub mod scl;
+mod storage;
 
 pub use dead::{ConstantDevice, EchoDevice, NullDevice};
 pub use device::FsDevice;

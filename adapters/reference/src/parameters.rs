@@ -1,10 +1,12 @@
-//! The on-request data of the reference FS-Device: the Indices of Table A.1 and the checks at FSP_VerifyRecord.
+//! The on-request data of the reference FS-Device: the Indices of Table A.1, the reset commands (E.3.3; v1.1: E.3.2)
+//! and the checks at FSP_VerifyRecord.
 //!
 //! The authenticity and protocol blocks survive power cycles. The checks are the same whether FSP_TechParCRC is 0 or not:
 //! 11.5.7 lets no deviating block start the SCL, and Table E.2 (v1.1: E.3) no default authenticity. This device holds
 //! no technology parameters (FST), so their signature is compared with the stored one alone.
 
 use crate::Mutant;
+use crate::storage::{self, Blocks, Transfer};
 use fsct_adapters::Variant;
 use fsct_protocol::Edition;
 use fsct_protocol::crc::{crc16, crc32};
@@ -17,6 +19,8 @@ pub mod error_type {
     pub const INDEX_NOT_AVAILABLE: u16 = 0x8011;
     /// The Subindex does not exist.
     pub const SUBINDEX_NOT_AVAILABLE: u16 = 0x8012;
+    /// The service is not available at the moment, because the device controls itself.
+    pub const TEMPORARILY_UNAVAILABLE: u16 = 0x8022;
     /// Not readable, or not writable.
     pub const ACCESS_DENIED: u16 = 0x8023;
     /// A value is not permitted, or the signature of a block is wrong.
@@ -25,6 +29,8 @@ pub mod error_type {
     pub const LENGTH_OVERRUN: u16 = 0x8033;
     /// Fewer octets than the object has.
     pub const LENGTH_UNDERRUN: u16 = 0x8034;
+    /// The command does not exist.
+    pub const FUNCTION_NOT_AVAILABLE: u16 = 0x8035;
     /// Not in this state of the device.
     pub const FUNCTION_UNAVAILABLE: u16 = 0x8036;
     /// No communication: the device has no power.
@@ -51,8 +57,14 @@ pub mod event_code {
     pub const NO_VERIFY_RECORD: u16 = 0xB00A;
 }
 
-/// Indices of Table A.1 beside those of the FSP records.
+/// Indices of Table A.1 beside those of the FSP records, and of the base standard.
 mod index {
+    /// SystemCommand.
+    pub const SYSTEM_COMMAND: u16 = 0x0002;
+    /// Device Access Lock.
+    pub const ACCESS_LOCK: u16 = 0x000C;
+    /// ProfileCharacteristic.
+    pub const PROFILES: u16 = 0x000D;
     /// FS_Password (v1.1), FSP_TimeToReady (iec2022).
     pub const TIME_TO_READY: u16 = 0x4210;
     /// Reset_FS_Password (v1.1), FSP_MinShutDownTime (iec2022).
@@ -77,6 +89,8 @@ const MIN_SHUT_DOWN_TIME: u16 = 100;
 const WCDT_MS: u16 = 10;
 const OFDT_MS: u16 = 20;
 const PASSWORD_OCTETS: usize = 32;
+/// ProfileID of IO-Link Safety.
+const PROFILE_ID: u16 = 0x4001;
 /// Octets of each Subindex of 0x4200, from 1.
 const AUTHENTICITY_ITEMS: [usize; 4] = [4, 4, 1, 2];
 /// Octets of each Subindex of 0x4201, from 1.
@@ -113,6 +127,7 @@ pub struct Parameters {
     mutant: Option<Mutant>,
     authenticity: Authenticity,
     protocol: Protocol,
+    transfer: Transfer,
 }
 
 impl Parameters {
@@ -129,7 +144,13 @@ impl Parameters {
                 io_struct_crc: io_struct_crc(variant),
                 tech_par_crc: FACTORY_TECH_PAR_CRC,
             },
+            transfer: Transfer::Inactive,
         }
+    }
+
+    /// The supply is gone: so is a transfer that was under way.
+    pub fn power_off(&mut self) {
+        self.transfer = Transfer::Inactive;
     }
 
     /// Reads an Index; Subindex 0 is the whole object.
@@ -168,6 +189,10 @@ impl Parameters {
             index::MIN_SHUT_DOWN_TIME => item(&MIN_SHUT_DOWN_TIME.to_be_bytes(), &[], subindex),
             index::WCDT if edition == Edition::Iec2022 => item(&WCDT_MS.to_be_bytes(), &[], subindex),
             index::OFDT if edition == Edition::Iec2022 => item(&OFDT_MS.to_be_bytes(), &[], subindex),
+            storage::INDEX => self.transfer.read(subindex, &self.blocks()),
+            index::SYSTEM_COMMAND => Err(error_type::ACCESS_DENIED),
+            index::ACCESS_LOCK => item(&[0, 0], &[], subindex),
+            index::PROFILES => item(&PROFILE_ID.to_be_bytes(), &[2], subindex),
             _ => Err(error_type::INDEX_NOT_AVAILABLE),
         }
     }
@@ -203,6 +228,17 @@ impl Parameters {
                 if data.is_ascii() { Ok(Written::Nothing) } else { Err(error_type::VALUE_OUT_OF_RANGE) }
             }
             index::TIME_TO_READY if self.is(Mutant::TimeToReadyWritable) => Ok(Written::Nothing),
+            storage::INDEX if subindex == 1 => {
+                let adopted =
+                    self.transfer.command(only(data)?, self.variant.edition, self.blocks(), self.back_to_box())?;
+                Ok(adopted.map_or(Written::Nothing, |blocks| self.keep(blocks)))
+            }
+            index::SYSTEM_COMMAND => {
+                whole(subindex)?;
+                self.reset(only(data)?)?;
+                // A running SCL goes on with what was verified until the next start-up.
+                Ok(if operate { Written::Nothing } else { Written::Block })
+            }
             _ => {
                 self.read(index, subindex)?;
                 Err(error_type::ACCESS_DENIED)
@@ -216,8 +252,7 @@ impl Parameters {
         if block.port == 0 && !unassigned(&block) {
             return Err(error_type::VALUE_OUT_OF_RANGE);
         }
-        self.authenticity = block;
-        Ok(Written::Block)
+        Ok(self.take(|blocks| blocks.authenticity = block))
     }
 
     fn write_protocol(&mut self, data: &[u8]) -> Result<Written, u16> {
@@ -225,8 +260,55 @@ impl Parameters {
         if !self.supports(&block) || block.watchdog_ms == 0 {
             return Err(error_type::VALUE_OUT_OF_RANGE);
         }
-        self.protocol = block;
-        Ok(Written::Block)
+        Ok(self.take(|blocks| blocks.protocol = block))
+    }
+
+    /// Puts a block where it belongs: into the memory, or into the download under way.
+    fn take(&mut self, change: impl FnOnce(&mut Blocks)) -> Written {
+        match &mut self.transfer {
+            Transfer::Ignored => Written::Nothing,
+            Transfer::Download(blocks) => {
+                change(blocks);
+                Written::Nothing
+            }
+            Transfer::Inactive | Transfer::Upload => {
+                let mut blocks = self.blocks();
+                change(&mut blocks);
+                self.keep(blocks)
+            }
+        }
+    }
+
+    fn blocks(&self) -> Blocks {
+        Blocks { authenticity: self.authenticity, protocol: self.protocol }
+    }
+
+    fn keep(&mut self, blocks: Blocks) -> Written {
+        self.authenticity = blocks.authenticity;
+        self.protocol = blocks.protocol;
+        Written::Block
+    }
+
+    /// Whether nobody has assigned this device to a port yet.
+    fn back_to_box(&self) -> bool {
+        unassigned(&self.authenticity) && self.authenticity.port == 0
+    }
+
+    /// A SystemCommand: the resets of the edition, in commissioning alone. There are no technology parameters that an
+    /// application reset could change.
+    fn reset(&mut self, command: u8) -> Result<(), u16> {
+        let all = match (self.variant.edition, command) {
+            (Edition::V1_1, 0x82) | (Edition::Iec2022, 0x83) => true,
+            (Edition::Iec2022, 0x81) => false,
+            _ => return Err(error_type::FUNCTION_NOT_AVAILABLE),
+        };
+        if self.protocol.tech_par_crc != 0 {
+            return Err(error_type::FUNCTION_UNAVAILABLE);
+        }
+        if all {
+            *self = Parameters::factory(self.variant, self.mutant);
+        }
+        Ok(())
     }
 
     fn supports(&self, block: &Protocol) -> bool {
@@ -336,6 +418,12 @@ fn block(subindex: u8, data: &[u8], items: &[usize]) -> Result<(), u16> {
 
 fn whole(subindex: u8) -> Result<(), u16> {
     if subindex == 0 { Ok(()) } else { Err(error_type::SUBINDEX_NOT_AVAILABLE) }
+}
+
+/// The one octet of a command.
+fn only(data: &[u8]) -> Result<u8, u16> {
+    of_length(data, 1, 1)?;
+    data.first().copied().ok_or(error_type::LENGTH_UNDERRUN)
 }
 
 fn of_length(data: &[u8], least: usize, most: usize) -> Result<(), u16> {
