@@ -3,6 +3,7 @@
 mod lines;
 mod port;
 mod reach;
+mod storage;
 
 use crate::case::model::*;
 use crate::channel::Channel;
@@ -69,6 +70,8 @@ pub struct Engine<'s, 'd> {
     step: usize,
     /// Octets without safety relevance in and out, as configured last.
     nsr: (u8, u8),
+    /// The Data Storage set that was copied last: Index, Subindex, value.
+    set: Vec<(u16, u8, Vec<u8>)>,
     /// ClientID of the latest SMI request.
     client: u16,
 }
@@ -85,7 +88,7 @@ impl<'s, 'd> Engine<'s, 'd> {
             measurements: Vec::new(),
             lost: false,
         };
-        Engine { session, testers, outcome, judging, checks: 0, step: 0, nsr: (0, 0), client: 0 }
+        Engine { session, testers, outcome, judging, checks: 0, step: 0, nsr: (0, 0), set: Vec::new(), client: 0 }
     }
 
     /// Runs start condition, steps and liveness check.
@@ -269,6 +272,7 @@ impl<'s, 'd> Engine<'s, 'd> {
             Action::Read { index, subindex } => {
                 self.acyclic(Stimulus::Read { index: *index, subindex: *subindex })?;
             }
+            Action::DataStorage(way) => self.copy(*way)?,
             Action::App(set) => self.app(set)?,
             Action::Configure(configure) => self.configure(configure)?,
             Action::Connect(connect) => self.connect(connect)?,

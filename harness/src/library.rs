@@ -332,7 +332,7 @@ pub fn needs(steps: &[Step]) -> impl Iterator<Item = Pco> + '_ {
         Action::Power(_) => Some(Pco::Power),
         Action::App(_) => Some(Pco::App),
         Action::Parameterize(ref asked) if !asked.starts || !asked.blocks || asked.armed => Some(Pco::Acyclic),
-        Action::Read { .. } | Action::Write { .. } | Action::Smi(_) | Action::Raise { .. } => Some(Pco::Acyclic),
+        Action::Read { .. } | Action::Write { .. } | Action::DataStorage(_) | Action::Smi(_) | Action::Raise { .. } => Some(Pco::Acyclic),
         Action::Drive(_) | Action::Wake(_) | Action::Pass { after: Some(_), .. } => Some(Pco::Line),
         _ => None,
     })

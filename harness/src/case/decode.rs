@@ -31,7 +31,7 @@ const BACKS: &[(Back, &str)] = &[
     (Back::Late, "late"),
 ];
 /// The words for the action of a step, and the side they are for.
-const ACTIONS: [(&str, &[Role]); 17] = [
+const ACTIONS: [(&str, &[Role]); 18] = [
     ("exchange", &[Role::Device, Role::Master]),
     ("wait", &[Role::Device, Role::Master]),
     ("partner", &[Role::Device, Role::Master]),
@@ -39,6 +39,7 @@ const ACTIONS: [(&str, &[Role]); 17] = [
     ("parameterize", &[Role::Device]),
     ("write", &[Role::Device]),
     ("read", &[Role::Device]),
+    ("data-storage", &[Role::Device]),
     ("app", &[Role::Device, Role::Master]),
     ("configure", &[Role::Master]),
     ("connect", &[Role::Master]),
@@ -136,6 +137,9 @@ impl Decoder<'_> {
             "power" => self.word(node, &[(Action::Power(true), "on"), (Action::Power(false), "off")], "power"),
             "parameterize" => Some(Action::Parameterize(self.parameterize(node))),
             "write" | "read" => self.acyclic(word, node),
+            "data-storage" => self
+                .word(node, &[(Way::Upload, "upload"), (Way::Download, "download")], "data-storage")
+                .map(Action::DataStorage),
             "app" => Some(self.app(node)),
             "configure" => Some(self.configure(node)),
             "connect" => self.connect(node),

@@ -81,6 +81,8 @@ pub enum Action {
         /// Subindex.
         subindex: u8,
     },
+    /// Data Storage as an FS-Master does it.
+    DataStorage(Way),
     /// Input services of the application.
     App(Vec<(Service, Data)>),
     /// SMI_PortConfiguration with the FSPortConfigList of the profile, and these deviations from it.
@@ -120,6 +122,15 @@ pub struct Wait {
     pub until: Duration,
     /// What the link does meanwhile.
     pub link: Meanwhile,
+}
+
+/// Which way Data Storage copies.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// From the FS-Device to the tester, which keeps the set.
+    Upload,
+    /// The set that is kept into the FS-Device.
+    Download,
 }
 
 /// What the link does while time passes.
