@@ -613,9 +613,13 @@ impl<'s, 'd> Engine<'s, 'd> {
         for (index, data) in parameterize::records(profile, asked, self.session.setup().mode, io_struct_crc) {
             self.session.acyclic(Stimulus::Write { index, subindex: 0, data })?;
             let written = self.session.reply == Some(Reply::Written);
-            if index == INDEX_VERIFY && !asked.starts {
+            if index == INDEX_VERIFY && asked.starts != Starts::Yes {
                 // Taken with an Event or refused, and a product may take its time to raise it.
                 self.session.pass(EVENT_NS)?;
+                if asked.starts == Starts::Open {
+                    // So far ahead that a start is never overdue.
+                    self.session.link_mut().oracle.parameterized(u64::MAX / 2);
+                }
             } else if !written {
                 let expected = format!("record 0x{index:04X} written");
                 let observed = self.session.replied();

@@ -2,12 +2,13 @@
 
 mod port;
 
-use crate::case::model::{Expectation, Expected, Key};
+use crate::case::model::{EVENT_TYPES, Expectation, Expected, Key, RecordField};
 use crate::session::{Reply, Session};
 use crate::tester::Tester;
 use crate::trace::hex;
 use fsct_adapters::{Octets, Pco, Role};
 use fsct_protocol::Edition;
+use fsct_protocol::fsp::{Authenticity, Protocol};
 use fsct_protocol::spdu::{View, succ};
 use fsct_reports::record::Check;
 
@@ -51,6 +52,7 @@ pub fn judge(expectation: &Expectation, before: &Before, session: &Session<'_>, 
         }
         Key::Reply => reply(expectation, session),
         Key::Event => event(expectation, session),
+        Key::EventType => event_type(expectation, session)?,
         Key::Mode | Key::PortPower | Key::Cq | Key::Iq | Key::WakeUp | Key::Record => {
             port::of_port(expectation, session)
         }
@@ -145,21 +147,35 @@ fn spdu_field(expectation: &Expectation, before: &Before, session: &Session<'_>)
 }
 
 fn event(expectation: &Expectation, session: &Session<'_>) -> Judged {
-    let seen: Vec<String> = session.events.iter().map(|code| format!("0x{code:04X}")).collect();
+    let seen: Vec<String> = session.events.iter().map(|(code, _)| format!("0x{code:04X}")).collect();
     let seen = if seen.is_empty() { "no Event".to_owned() } else { seen.join(", ") };
-    match expectation.value {
+    match &expectation.value {
         Expected::None => ("no Event".to_owned(), seen, session.events.is_empty()),
         Expected::Unreserved => {
             let setup = session.setup();
-            let met = !session.events.iter().any(|code| reserved(setup.role, setup.edition, *code));
+            let met = !session.events.iter().any(|(code, _)| reserved(setup.role, setup.edition, *code));
             ("no Event with a reserved code".to_owned(), seen, met)
+        }
+        Expected::Events(none, codes) => {
+            let met =
+                (*none || !session.events.is_empty()) && session.events.iter().all(|(code, _)| codes.contains(code));
+            (format!("Event {}", expectation.text), seen, met)
         }
         _ => {
             let wanted = number(expectation);
-            let met = session.events.iter().any(|code| u32::from(*code) == wanted);
+            let met = session.events.iter().any(|(code, _)| u32::from(*code) == wanted);
             (format!("Event 0x{wanted:04X}"), seen, met)
         }
     }
+}
+
+/// `None` without an Event.
+fn event_type(expectation: &Expectation, session: &Session<'_>) -> Option<Judged> {
+    let types: Vec<u8> = session.events.iter().map(|(_, qualifier)| qualifier >> 4 & 3).collect();
+    let word = |number: &u8| EVENT_TYPES.iter().find(|entry| entry.0 == *number).map_or("reserved", |entry| entry.1);
+    let seen: Vec<&str> = types.iter().map(word).collect();
+    let met = matches!(&expectation.value, Expected::Types(wanted) if types.iter().all(|seen| wanted.contains(seen)));
+    (!types.is_empty()).then(|| (expectation.text.clone(), seen.join(", "), met))
 }
 
 /// Whether Annex B reserves an EventCode that a Device (Table B.1) or an FS-Master (Table B.2) raises itself.
@@ -297,18 +313,63 @@ fn reply(expectation: &Expectation, session: &Session<'_>) -> Judged {
             let met = matches!(&session.reply, Some(Reply::Value(octets)) if octets.len() == *count);
             return (format!("{count} octets read"), observed, met);
         }
+        Expected::Range(field, least, most) => {
+            let met = matches!(&session.reply, Some(Reply::Value(octets))
+                if value(octets, *field).is_some_and(|value| (*least..=*most).contains(&value)));
+            return (expectation.text.clone(), observed, met);
+        }
+        Expected::Contains(entry) => {
+            let met = matches!(&session.reply, Some(Reply::Value(octets))
+                if octets.chunks(entry.len()).any(|octets| octets == entry));
+            return (expectation.text.clone(), observed, met);
+        }
+        Expected::Unlocked => {
+            let met = match &session.reply {
+                Some(Reply::Value(octets)) => octets.len() == 2 && octets.last().is_some_and(|octet| octet & 3 == 0),
+                Some(Reply::Refused(_)) => true,
+                _ => false,
+            };
+            return ("bits 0 and 1 are 0, or no such object".to_owned(), observed, met);
+        }
         _ => format!("refused 0x{:04X}", number(expectation)),
     };
     let met = expected == observed;
     (expected, observed, met)
 }
 
+/// The number that was read, or a field of the authenticity or protocol record that was.
+fn value(octets: &[u8], field: Option<&'static RecordField>) -> Option<u32> {
+    let octets = match field {
+        None => octets,
+        Some(field) => {
+            let before = if octets.len() == Protocol::OCTETS { Authenticity::OCTETS } else { 0 };
+            octets.get(field.octets.0.checked_sub(before)?..field.octets.1.checked_sub(before)?)?
+        }
+    };
+    let few = (1..=4).contains(&octets.len());
+    few.then(|| octets.iter().fold(0, |value, octet| value << 8 | u32::from(*octet)))
+}
+
 #[cfg(test)]
 mod tests {
-    use super::reserved;
+    use super::{reserved, value};
+    use crate::case::model::RecordField;
     use fsct_adapters::Role;
     use fsct_protocol::Edition;
     use rstest::rstest;
+
+    #[rstest]
+    #[case(&[0x7F, 0xFF], None, Some(0x7FFF))]
+    #[case(&[], None, None)]
+    #[case(&[0; 5], None, None)]
+    #[case(&[0, 0, 0, 0, 0, 0, 0, 0, 7, 0, 0], Some("FSP_Port"), Some(7))]
+    #[case(&[0, 0, 0, 0, 0, 0, 1, 2, 3, 4, 0, 0], Some("FSP_TechParCRC"), Some(0x0102_0304))]
+    #[case(&[0, 0, 0, 0, 0, 0, 1, 2, 3, 4, 0, 0], Some("FSP_Port"), None)]
+    #[case(&[0, 1], Some("FSP_Port"), None)]
+    fn numbers_are_read(#[case] octets: &[u8], #[case] field: Option<&str>, #[case] expected: Option<u32>) {
+        let field = field.and_then(|name| RecordField::ALL.iter().find(|field| field.name == name));
+        assert_eq!(value(octets, field), expected);
+    }
 
     #[rstest]
     #[case(Role::Master, Edition::V1_1, 0xB003..=0xB006, false)]

@@ -1,6 +1,7 @@
 //! Everything under `testcases/`: carried in the binary, or read from a folder.
 
-use crate::case::{self, Case, Covered, Start, Suite, model::Action, model::Step};
+use crate::case::model::{Action, Blocks, Starts, Step};
+use crate::case::{self, Case, Covered, Start, Suite};
 use crate::coverage::Coverage;
 use crate::ledger::{Class, Ledger};
 use crate::limits;
@@ -331,7 +332,11 @@ pub fn needs(steps: &[Step]) -> impl Iterator<Item = Pco> + '_ {
     steps.iter().filter_map(|step| match step.action {
         Action::Power(_) => Some(Pco::Power),
         Action::App(_) => Some(Pco::App),
-        Action::Parameterize(ref asked) if !asked.starts || !asked.blocks || asked.armed => Some(Pco::Acyclic),
+        Action::Parameterize(ref asked)
+            if asked.starts != Starts::Yes || asked.blocks != Blocks::Written || asked.armed =>
+        {
+            Some(Pco::Acyclic)
+        }
         Action::Read { .. } | Action::Write { .. } | Action::DataStorage(_) | Action::Smi(_) | Action::Raise { .. } => Some(Pco::Acyclic),
         Action::Drive(_) | Action::Wake(_) | Action::Pass { after: Some(_), .. } => Some(Pco::Line),
         _ => None,

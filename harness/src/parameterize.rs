@@ -1,11 +1,11 @@
 //! FSP parameterization of an FS-Device as a case asks for it: the records of the profile, and how the verify record
 //! deviates from them.
 
-use crate::case::model::{Parameterize, RecordField, Value};
+use crate::case::model::{Blocks, Parameterize, RecordField, Sent, Value};
 use crate::profile::Profile;
 use fsct_protocol::ProtMode;
 use fsct_protocol::crc::crc16;
-use fsct_protocol::fsp::{INDEX_VERIFY, VerifyRecord};
+use fsct_protocol::fsp::{INDEX_AUTHENTICITY, INDEX_VERIFY, VerifyRecord};
 
 /// The fields that are computed over the others.
 const SIGNATURES: [&str; 2] = ["FSP_AuthentCRC", "FSP_ProtParCRC"];
@@ -14,9 +14,20 @@ const SIGNATURES: [&str; 2] = ["FSP_AuthentCRC", "FSP_ProtParCRC"];
 pub fn records(profile: &Profile, asked: &Parameterize, mode: ProtMode, io_struct_crc: u16) -> Vec<(u16, Vec<u8>)> {
     let tech_par_crc = if asked.armed { profile.armed_tech_par_crc() } else { profile.tech_par_crc };
     let mut records = profile.records(mode, io_struct_crc, tech_par_crc);
-    records.retain(|(index, _)| if *index == INDEX_VERIFY { asked.record } else { asked.blocks });
+    records.retain(|(index, _)| match *index {
+        INDEX_VERIFY => asked.record != Sent::None,
+        INDEX_AUTHENTICITY => asked.blocks == Blocks::Written,
+        _ => asked.blocks != Blocks::Kept,
+    });
     for (_, record) in records.iter_mut().filter(|(index, _)| *index == INDEX_VERIFY) {
         deviate(record, &asked.set);
+        if asked.record == Sent::Swapped {
+            for field in &RecordField::ALL {
+                record.get_mut(field.octets.0..field.octets.1).into_iter().for_each(<[u8]>::reverse);
+            }
+        }
+        corrupt(record, &asked.corrupt);
+        record.resize(record.len().saturating_add_signed(asked.longer.into()), 0);
     }
     records
 }
@@ -32,6 +43,13 @@ fn deviate(record: &mut [u8], set: &[(&'static RecordField, Value)]) {
         }
     }
     signatures.into_iter().for_each(|(field, value)| put(record, field, value));
+}
+
+/// Inverts these bits.
+pub fn corrupt(record: &mut [u8], bits: &[usize]) {
+    for bit in bits {
+        record.get_mut(bit / 8).into_iter().for_each(|octet| *octet ^= 0x80 >> (bit % 8));
+    }
 }
 
 fn put(record: &mut [u8], field: &RecordField, value: Value) {
@@ -67,6 +85,13 @@ mod tests {
         deviate(&mut deviating, &[(field("FSP_Port"), Value::Number(200)), (field("FSP_Watchdog"), Value::Wrong)]);
         assert_eq!(Authenticity::from_octets(&deviating[..11]).map(|block| block.port), Ok(200));
         assert_eq!(Protocol::from_octets(&deviating[11..]).map(|block| block.watchdog_ms), Ok(21));
+    }
+
+    #[test]
+    fn bits_are_counted_from_the_most_significant() {
+        let mut falsified = record();
+        corrupt(&mut falsified, &[0, 183, 400]);
+        assert_eq!((falsified[0], falsified[22]), (record()[0] ^ 0x80, record()[22] ^ 1));
     }
 
     #[test]

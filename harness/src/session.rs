@@ -109,8 +109,8 @@ pub struct Session<'d> {
     pub reply: Option<Reply>,
     /// The latest request through the SMI, and its result.
     pub smi: Option<(SmiRequest, Option<SmiResult>)>,
-    /// EventCodes seen since the step began.
-    pub events: Vec<u16>,
+    /// EventCodes seen since the step began, each with its EventQualifier.
+    pub events: Vec<(u16, u8)>,
     observed: Vec<Observation>,
 }
 
@@ -447,7 +447,7 @@ impl<'d> Session<'d> {
                     }
                 }
             }
-            Seen::Indication { code, .. } => self.events.push(*code),
+            Seen::Indication { code, qualifier, .. } => self.events.push((*code, *qualifier)),
             Seen::Smi(result) => {
                 if let Some((_, slot)) = &mut self.smi {
                     *slot = Some((**result).clone());
@@ -456,9 +456,7 @@ impl<'d> Session<'d> {
             Seen::Value(data) => self.reply = Some(Reply::Value(data.clone())),
             Seen::Written => self.reply = Some(Reply::Written),
             Seen::Refused { error } => self.reply = Some(Reply::Refused(*error)),
-            Seen::Event { code, .. } => {
-                self.events.push(*code);
-            }
+            Seen::Event { code, qualifier } => self.events.push((*code, *qualifier)),
             Seen::Unsupported => match stimulus {
                 Stimulus::Read { .. } | Stimulus::Write { .. } => self.reply = Some(Reply::Unsupported),
                 Stimulus::Other { .. } | Stimulus::Smi(_) => {}

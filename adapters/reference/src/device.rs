@@ -23,6 +23,9 @@ pub(crate) const PORT: u8 = 1;
 /// EventQualifier of an Error that appears, from the application of a device (base standard).
 const ERROR_APPEARS: u8 = 0xF4;
 
+/// EventQualifier of a Warning that appears.
+const WARNING_APPEARS: u8 = 0xE4;
+
 /// Edges told during one stimulus before test pulses are left out.
 const EDGES_AT_ONCE: usize = 24;
 
@@ -215,7 +218,9 @@ impl FsDevice {
             Written::Block => (None, false),
             Written::Verified(verified) => (Some(session.kept.take().unwrap_or_else(|| start(verified))), true),
             Written::Deviating(events) => {
-                events.into_iter().flatten().for_each(|code| seen.push_error(code));
+                let warn = self.options.mutant == Some(Mutant::EventsAsWarnings);
+                let qualifier = if warn { WARNING_APPEARS } else { ERROR_APPEARS };
+                events.into_iter().flatten().for_each(|code| seen.push(Seen::Event { code, qualifier }));
                 let starts = self.options.mutant == Some(Mutant::DeviationStarts);
                 (self.parameters.stored().filter(|_| starts).map(start), true)
             }

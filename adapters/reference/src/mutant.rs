@@ -307,6 +307,47 @@ catalogue! {
         AuthenticityReadReversed "authenticity-read-reversed", "A.1 Table A.1":
             "FSP_Authenticity_1 is read back least significant octet first."
 
+        RecordTakenInOperate "record-taken-in-operate", "9.1.1":
+            "FSP_VerifyRecord starts the SCL in OPERATE as well."
+        RecordOf24Octets "record-of-24-octets", "A.2.10":
+            "An FSP_VerifyRecord with an octet too many is taken."
+        RecordBitUnchecked "record-bit-unchecked", "11.5.7":
+            "The least significant bit of FSP_AuthentCRC in the record is not compared."
+        TestModeTakesAll "tech-par-crc-0-in-record-taken", "G.2":
+            "A record with FSP_TechParCRC 0 starts the SCL whatever FSP_TechParCRC is stored."
+        AuthenticityEventOfPort "authenticity-event-of-port", "B.1 Table B.1":
+            "Another authenticity raises the EventCode of another port."
+        EventsAsWarnings "events-as-warnings", "B.1 Table B.1":
+            "Events at start-up are Warnings instead of Errors."
+        WcdtWritable "wcdt-writable", "A.1 Table A.1, iec2022":
+            "FSP_WCDT can be written."
+        OfdtMissing "ofdt-missing", "A.1 Table A.1, iec2022":
+            "There is no FSP_OFDT."
+        MinShutDownTimeShort "min-shut-down-time-short", "A.1 Table A.1, iec2022":
+            "FSP_MinShutDownTime is 500 ms."
+        PasswordReadable "password-readable", "A.1 Table A.1, v1.1":
+            "FS_Password can be read."
+        ProfileMissing "profile-missing", "E.3.4":
+            "ProfileCharacteristic does not name IO-Link Safety."
+        AccessLocked "access-locked", "9.4.1":
+            "Device Access Lock has bit 1 set."
+        FactoryTechParCrc0 "factory-tech-par-crc-0", "G.1 Table G.1":
+            "FSP_TechParCRC is 0 in the factory setting."
+        ResetWhenArmed "reset-when-armed", "E.3.3, v1.1 E.3.2":
+            "Reset commands are obeyed by an armed device."
+        ResetKeepsAuthenticity "reset-keeps-authenticity", "E.3.3, v1.1 E.3.2":
+            "The way back to the factory setting leaves the authenticity."
+        ApplicationResetForgets "application-reset-forgets", "E.3.3, iec2022":
+            "An application reset resets authenticity and protocol parameters."
+        RestoreFactoryTaken "restore-factory-taken", "E.3.3, iec2022":
+            "Restore factory settings of v1.1 is implemented."
+        DownloadAdoptedInUse "download-adopted-in-use", "11.7.6":
+            "A device in use adopts a Data Storage download."
+        DownloadNotAdopted "download-not-adopted", "11.7.6":
+            "A device from the factory ignores a Data Storage download."
+        DownloadRefusedOtherwise "download-refused-otherwise", "9.4.1, iec2022":
+            "The start of a download is refused with 0x8036 instead of 0x8022."
+
         // Lines without communication
         ReadyPulseShort "ready-pulse-499-us", "5.4":
             "The Ready pulse is 499 us wide."

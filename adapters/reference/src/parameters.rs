@@ -142,7 +142,7 @@ impl Parameters {
                 mode: variant.mode.code(),
                 watchdog_ms: DEFAULT_WATCHDOG_MS,
                 io_struct_crc: io_struct_crc(variant),
-                tech_par_crc: FACTORY_TECH_PAR_CRC,
+                tech_par_crc: if mutant == Some(Mutant::FactoryTechParCrc0) { 0 } else { FACTORY_TECH_PAR_CRC },
             },
             transfer: Transfer::Inactive,
         }
@@ -182,16 +182,22 @@ impl Parameters {
                     false => item(&crc32(0, &described).to_be_bytes(), &[], subindex),
                 }
             }
+            index::TIME_TO_READY if edition == Edition::V1_1 && self.is(Mutant::PasswordReadable) => {
+                Ok(vec![0; PASSWORD_OCTETS])
+            }
             index::TIME_TO_READY | index::MIN_SHUT_DOWN_TIME if edition == Edition::V1_1 => {
                 Err(error_type::ACCESS_DENIED)
             }
+            index::MIN_SHUT_DOWN_TIME if self.is(Mutant::MinShutDownTimeShort) => item(&[0, 50], &[], subindex),
+            index::OFDT if self.is(Mutant::OfdtMissing) => Err(error_type::INDEX_NOT_AVAILABLE),
             index::TIME_TO_READY => item(&TIME_TO_READY.to_be_bytes(), &[], subindex),
             index::MIN_SHUT_DOWN_TIME => item(&MIN_SHUT_DOWN_TIME.to_be_bytes(), &[], subindex),
             index::WCDT if edition == Edition::Iec2022 => item(&WCDT_MS.to_be_bytes(), &[], subindex),
             index::OFDT if edition == Edition::Iec2022 => item(&OFDT_MS.to_be_bytes(), &[], subindex),
             storage::INDEX => self.transfer.read(subindex, &self.blocks()),
             index::SYSTEM_COMMAND => Err(error_type::ACCESS_DENIED),
-            index::ACCESS_LOCK => item(&[0, 0], &[], subindex),
+            index::ACCESS_LOCK => item(&[0, if self.is(Mutant::AccessLocked) { 2 } else { 0 }], &[], subindex),
+            index::PROFILES if self.is(Mutant::ProfileMissing) => item(&[0, 1], &[2], subindex),
             index::PROFILES => item(&PROFILE_ID.to_be_bytes(), &[2], subindex),
             _ => Err(error_type::INDEX_NOT_AVAILABLE),
         }
@@ -217,8 +223,10 @@ impl Parameters {
             INDEX_VERIFY if subindex != 0 && self.is(Mutant::RecordBySubindex) => Ok(Written::Nothing),
             INDEX_VERIFY => {
                 whole(subindex)?;
-                of_length(data, VERIFY_OCTETS, VERIFY_OCTETS)?;
-                before(operate)?;
+                let most = if self.is(Mutant::RecordOf24Octets) { VERIFY_OCTETS + 1 } else { VERIFY_OCTETS };
+                of_length(data, VERIFY_OCTETS, most)?;
+                before(operate && !self.is(Mutant::RecordTakenInOperate))?;
+                let data = data.get(..VERIFY_OCTETS).unwrap_or(data);
                 Ok(self.verify(data))
             }
             index::TIME_TO_READY | index::MIN_SHUT_DOWN_TIME if self.variant.edition == Edition::V1_1 => {
@@ -228,9 +236,16 @@ impl Parameters {
                 if data.is_ascii() { Ok(Written::Nothing) } else { Err(error_type::VALUE_OUT_OF_RANGE) }
             }
             index::TIME_TO_READY if self.is(Mutant::TimeToReadyWritable) => Ok(Written::Nothing),
+            index::WCDT if self.is(Mutant::WcdtWritable) => Ok(Written::Nothing),
             storage::INDEX if subindex == 1 => {
-                let adopted =
-                    self.transfer.command(only(data)?, self.variant.edition, self.blocks(), self.back_to_box())?;
+                let (blocks, free) = (self.blocks(), self.back_to_box());
+                let adopted = self.transfer.command(only(data)?, self.variant.edition, blocks, free);
+                let adopted = adopted.map_err(|error| match error {
+                    error_type::TEMPORARILY_UNAVAILABLE if self.is(Mutant::DownloadRefusedOtherwise) => {
+                        error_type::FUNCTION_UNAVAILABLE
+                    }
+                    error => error,
+                })?;
                 Ok(adopted.map_or(Written::Nothing, |blocks| self.keep(blocks)))
             }
             index::SYSTEM_COMMAND => {
@@ -267,6 +282,7 @@ impl Parameters {
     fn take(&mut self, change: impl FnOnce(&mut Blocks)) -> Written {
         match &mut self.transfer {
             Transfer::Ignored => Written::Nothing,
+            Transfer::Download(_) if self.mutant == Some(Mutant::DownloadNotAdopted) => Written::Nothing,
             Transfer::Download(blocks) => {
                 change(blocks);
                 Written::Nothing
@@ -291,7 +307,7 @@ impl Parameters {
 
     /// Whether nobody has assigned this device to a port yet.
     fn back_to_box(&self) -> bool {
-        unassigned(&self.authenticity) && self.authenticity.port == 0
+        unassigned(&self.authenticity) && self.authenticity.port == 0 || self.is(Mutant::DownloadAdoptedInUse)
     }
 
     /// A SystemCommand: the resets of the edition, in commissioning alone. There are no technology parameters that an
@@ -299,14 +315,19 @@ impl Parameters {
     fn reset(&mut self, command: u8) -> Result<(), u16> {
         let all = match (self.variant.edition, command) {
             (Edition::V1_1, 0x82) | (Edition::Iec2022, 0x83) => true,
-            (Edition::Iec2022, 0x81) => false,
+            (Edition::Iec2022, 0x82) if self.is(Mutant::RestoreFactoryTaken) => true,
+            (Edition::Iec2022, 0x81) => self.is(Mutant::ApplicationResetForgets),
             _ => return Err(error_type::FUNCTION_NOT_AVAILABLE),
         };
-        if self.protocol.tech_par_crc != 0 {
+        if self.protocol.tech_par_crc != 0 && !self.is(Mutant::ResetWhenArmed) {
             return Err(error_type::FUNCTION_UNAVAILABLE);
         }
         if all {
+            let authenticity = self.authenticity;
             *self = Parameters::factory(self.variant, self.mutant);
+            if self.is(Mutant::ResetKeepsAuthenticity) {
+                self.authenticity = authenticity;
+            }
         }
         Ok(())
     }
@@ -316,6 +337,12 @@ impl Parameters {
     }
 
     fn verify(&self, record: &[u8]) -> Written {
+        let mut record = record.to_vec();
+        if self.is(Mutant::RecordBitUnchecked)
+            && let (Some(octet), stored) = (record.get_mut(10), self.authenticity.to_octets()[10])
+        {
+            *octet = *octet & !1 | stored & 1;
+        }
         let (authenticity, protocol) = record.split_at(AUTHENTICITY_OCTETS.min(record.len()));
         let port = self.verify_authenticity(authenticity);
         let watchdog_ms = self.verify_protocol(protocol);
@@ -337,6 +364,7 @@ impl Parameters {
             && (block.authenticity_2 == stored.authenticity_2 || self.is(Mutant::Authenticity2Unverified));
         let port_same = block.port == stored.port || self.is(Mutant::PortUnverified);
         match Port::new(stored.port).filter(|_| port_same) {
+            _ if !same && self.is(Mutant::AuthenticityEventOfPort) => Err(event_code::PORT),
             _ if !same || unassigned(&block) => Err(event_code::AUTHENTICITY),
             Some(port) => Ok(port),
             None => Err(event_code::PORT),
@@ -372,6 +400,9 @@ impl Parameters {
             Some(Mutant::ModeUnverified) => Protocol { mode: stored.mode, ..block },
             Some(Mutant::WatchdogUnverified) => Protocol { watchdog_ms: stored.watchdog_ms, ..block },
             Some(Mutant::IoStructCrcUnverified) => Protocol { io_struct_crc: stored.io_struct_crc, ..block },
+            Some(Mutant::TestModeTakesAll) if block.tech_par_crc == 0 => {
+                Protocol { tech_par_crc: stored.tech_par_crc, ..block }
+            }
             Some(Mutant::TechParCrcUnverified) => Protocol { tech_par_crc: stored.tech_par_crc, ..block },
             _ => block,
         }

@@ -5,10 +5,10 @@ mod parameters;
 mod port;
 mod spdu;
 
-pub use expect::{Expectation, Expected, Key, Outcome};
+pub use expect::{EVENT_TYPES, Expectation, Expected, Key, Outcome};
 use fsct_adapters::{Line, Service};
 use fsct_lines::{Claim, Quantity};
-pub use parameters::{Parameterize, RecordField};
+pub use parameters::{Blocks, Parameterize, RecordField, Sent, Starts};
 pub use port::{Answered, Assigned, Configure, Connect, ERRORS, Smi, Specimen, Transfer, Until, Value, blocks};
 pub use spdu::{Back, Corrupt, Count, Data, Exchange, Field, Image, KEPT, PortNum, Signature};
 use std::ops::Range;

@@ -63,6 +63,17 @@ impl Decoder<'_> {
         {
             return Some(Expected::Not(number));
         }
+        if key == Key::EventType {
+            return self.types(text, at).map(Expected::Types);
+        }
+        if key == Key::Event && text.contains(" or ") {
+            return self.events(text, at);
+        }
+        if key == Key::Reply
+            && let Some(expected) = reply(text)
+        {
+            return Some(expected);
+        }
         let (words, most, octets) = values(key);
         let found = words.iter().find(|(_, word)| *word == text).map(|(value, _)| value.clone());
         let found = found.or_else(|| number.filter(|n| most.is_some_and(|most| *n <= most)).map(Expected::Number));
@@ -77,6 +88,33 @@ impl Decoder<'_> {
             self.problem(at, format!("`{text}` is no value of `{}`: {}", key.name(), known.join(", ")));
         }
         found
+    }
+
+    /// EventCodes with ` or ` between, `none` among them.
+    fn events(&mut self, text: &str, at: &Range<usize>) -> Option<Expected> {
+        let codes: Option<Vec<u16>> = text
+            .split(" or ")
+            .filter(|word| *word != "none")
+            .map(|word| u16::from_str_radix(word.strip_prefix("0x")?, 16).ok())
+            .collect();
+        if codes.is_none() {
+            self.problem(
+                at,
+                format!("`{text}` is no value of `event`: EventCodes such as `0xB003 or 0xB005`, or `none`"),
+            );
+        }
+        codes.map(|codes| Expected::Events(text.split(" or ").any(|word| word == "none"), codes))
+    }
+
+    /// Types of Events with ` or ` between.
+    fn types(&mut self, text: &str, at: &Range<usize>) -> Option<Vec<u8>> {
+        let types = text.split(" or ").map(|word| EVENT_TYPES.iter().find(|(_, known)| *known == word));
+        let types: Option<Vec<u8>> = types.map(|found| found.map(|(number, _)| *number)).collect();
+        if types.is_none() {
+            let known = EVENT_TYPES.map(|(_, word)| word).join(", ");
+            self.problem(at, format!("`{text}` is no value of `event.type`: {known}, several with ` or ` between"));
+        }
+        types
     }
 
     /// `positive`, `negative` or errors by name, several of them with ` or ` between.
@@ -122,6 +160,23 @@ const TRANSFERS: &[(Transfer, &str)] = &[
     (Transfer::Download, "download"),
     (Transfer::Refused, "refused"),
 ];
+
+/// `4 octets`, `1 to 32767`, `FSP_TechParCRC 1 to 65535` or `contains 40 01`; `None`: something else.
+fn reply(text: &str) -> Option<Expected> {
+    if let Some(octets) = text.strip_suffix(" octets") {
+        return octets.parse().ok().map(Expected::Count);
+    }
+    if let Some(entry) = text.strip_prefix("contains ") {
+        let octets: Option<Vec<u8>> = entry.split(' ').map(|octet| u8::from_str_radix(octet, 16).ok()).collect();
+        return octets.map(Expected::Contains);
+    }
+    let (least, most) = text.split_once(" to ")?;
+    let (field, least) = match least.rsplit_once(' ') {
+        Some((name, least)) => (Some(RecordField::ALL.iter().find(|field| field.name == name)?), least),
+        None => (None, least),
+    };
+    Some(Expected::Range(field, least.parse().ok()?, most.parse().ok()?))
+}
 
 type Words = &'static [(Expected, &'static str)];
 
@@ -185,9 +240,7 @@ fn values(key: Key) -> (Words, Option<u32>, bool) {
                 (Expected::Written, "written"),
                 (Expected::Refused, "refused"),
                 (Expected::Configured, "authenticity"),
-                (Expected::Count(2), "2 octets"),
-                (Expected::Count(4), "4 octets"),
-                (Expected::Count(12), "12 octets"),
+                (Expected::Unlocked, "unlocked"),
             ],
             None,
             true,
@@ -203,7 +256,7 @@ fn values(key: Key) -> (Words, Option<u32>, bool) {
         ),
         Key::Field(_) => (&[(Expected::Configured, "configured")], Some(u32::MAX), false),
         Key::Stored => (&[(Expected::Configured, "configured"), (Expected::Unchanged, "unchanged")], None, false),
-        Key::Result | Key::DataStorage => (&[], None, false),
+        Key::Result | Key::DataStorage | Key::EventType => (&[], None, false),
     }
 }
 

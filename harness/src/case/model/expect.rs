@@ -1,6 +1,6 @@
 //! What a case expects to see, and where.
 
-use super::Transfer;
+use super::{RecordField, Transfer};
 use fsct_adapters::{Mode, Role};
 
 /// One thing to be seen.
@@ -89,6 +89,8 @@ pub enum Key {
     Field(&'static str),
     /// EventCode seen in this step.
     Event,
+    /// Type of the Events seen in this step.
+    EventType,
 }
 
 const DEVICE: &[Role] = &[Role::Device];
@@ -97,7 +99,7 @@ const BOTH: &[Role] = &[Role::Device, Role::Master];
 
 impl Key {
     /// All keys as written in cases, and the side they are for; fields of ArgBlocks are `block.` and their name.
-    pub const ALL: [(Key, &'static str, &'static [Role]); 35] = [
+    pub const ALL: [(Key, &'static str, &'static [Role]); 36] = [
         (Key::DcountI, "DCount_i", DEVICE),
         (Key::SdSet, "SDset", DEVICE),
         (Key::DcommErr, "DCommErr", DEVICE),
@@ -133,6 +135,7 @@ impl Key {
         (Key::Length, "ArgBlockLength", MASTER),
         (Key::Block, "block", MASTER),
         (Key::Event, "event", BOTH),
+        (Key::EventType, "event.type", BOTH),
     ];
 
     /// As written in cases; a field of an ArgBlock by its name.
@@ -149,6 +152,7 @@ impl Key {
             self,
             Key::Reply
                 | Key::Event
+                | Key::EventType
                 | Key::Nsr
                 | Key::Mode
                 | Key::PortPower
@@ -188,7 +192,7 @@ impl Key {
             Key::Reply => "A.1 Table A.1",
             Key::Result | Key::Reference | Key::Length => "10.2",
             Key::Block | Key::Field(_) => "10.3",
-            Key::Event => "Annex B",
+            Key::Event | Key::EventType => "Annex B",
         }
     }
 }
@@ -220,6 +224,16 @@ pub enum Expected {
     Octets(Vec<u8>),
     /// So many octets, whichever.
     Count(usize),
+    /// A number from the first to the second, or a field of an FSP record that was read with such a number.
+    Range(Option<&'static RecordField>, u32, u32),
+    /// A list of entries, this one among them.
+    Contains(Vec<u8>),
+    /// Device Access Lock without the bits 0 and 1, or none at all.
+    Unlocked,
+    /// One of these EventCodes and no other; `true`: or none.
+    Events(bool, Vec<u16>),
+    /// EventQualifiers of one of these types (base standard: bits 5 and 4).
+    Types(Vec<u8>),
     /// A mode.
     Mode(Mode),
     /// What was configured.
@@ -239,6 +253,9 @@ pub enum Expected {
     /// One of these.
     Transfers(Vec<Transfer>),
 }
+
+/// Types of Events: bits 5 and 4 of an EventQualifier of the base standard.
+pub const EVENT_TYPES: [(u8, &str); 3] = [(1, "Notification"), (2, "Warning"), (3, "Error")];
 
 /// The result of a service.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
