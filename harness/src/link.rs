@@ -3,8 +3,8 @@
 use crate::case::model::KEPT;
 use crate::keeper::Keeper;
 use crate::lines::Lines;
-use crate::specimen::Memory;
 use crate::oracle::{App, Mismatch, Oracle, OssdeOracle, Setup};
+use crate::specimen::Memory;
 use crate::stopwatch::Stopwatch;
 use fsct_adapters::{Identity, Line, Mode, Octets, Role, Seen, Service};
 use fsct_protocol::Edition;

@@ -140,7 +140,10 @@ impl Scenario {
         };
         for edition in &editions {
             if !self.clauses.iter().any(|(own, _)| own == edition) {
-                problem(&case.at, format!("{} has no {}; give the case a `sweep: {{edition: [...]}}`", edition, self.id));
+                problem(
+                    &case.at,
+                    format!("{} has no {}; give the case a `sweep: {{edition: [...]}}`", edition, self.id),
+                );
             }
         }
         let (mut numbers, mut last) = (Vec::new(), 0);
@@ -250,4 +253,108 @@ fn activity(source: &Arc<Source>, node: &Node, problems: &mut Vec<Problem>) -> O
     };
     let number = number as u16;
     Some(Activity { number, edition, from: from?, to, what: what?.0, then, out_of_reach, at: node.at.clone() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::suite;
+    use rstest::rstest;
+
+    const SCENARIOS: &str = "
+- scenario: CH-G9
+  title: A chart
+  clause: {v1.1: Figure G.9}
+  activities:
+    - {n: 1, from: tool, to: master, what: One}
+    - {n: 2, from: master, to: device, what: Two, out_of_reach: {device: why}}
+    - {n: 3, edition: iec2022, from: operator, what: Three}
+";
+
+    fn source(name: &str, text: String) -> Arc<Source> {
+        Arc::new(Source { name: name.into(), text })
+    }
+
+    /// What is wrong with a case for an FS-Master that begins with this and has these steps.
+    fn wrong(scenarios: &str, head: &str, steps: &str) -> Vec<String> {
+        let scenarios = Scenarios::parse(&source("scenarios.yaml", scenarios.into())).expect("sound scenarios");
+        let text = format!(
+            "suite: s\nabout: a\ncases:\n  - {{id: MY-0001, title: t, requirements: [R-1-01], dut: master, {head}, start: idle, steps: {steps}}}\n"
+        );
+        let suite = suite(&source("my.yaml", text)).expect("a sound suite");
+        let mut problems = Vec::new();
+        scenarios.check(&[suite], &mut problems);
+        problems.iter().map(|problem| problem.render(false).lines().next().unwrap_or_default().to_owned()).collect()
+    }
+
+    #[rstest]
+    #[case::sound("scenario: CH-G9, sweep: {edition: [v1.1]}", "[{look: {}, activity: 1}, {look: {}, activity: [2]}]", &[])]
+    #[case::both_at_once("scenario: CH-G9, sweep: {edition: [v1.1]}", "[{look: {}, activity: [1, 2]}]", &[])]
+    #[case::noted("scenario: CH-G9, sweep: {edition: [v1.1]}", "[{look: {}, activity: 2}, {look: {}, activity: 1, note: so}]", &[])]
+    #[case::backwards(
+        "scenario: CH-G9, sweep: {edition: [v1.1]}",
+        "[{look: {}, activity: 2}, {look: {}, activity: 1}]",
+        &["error: activity 1 of CH-G9 comes before 2; a `note` at the step says why it is the other way round"]
+    )]
+    #[case::other_edition(
+        "scenario: CH-G9, sweep: {edition: [v1.1]}",
+        "[{look: {}, activity: [1, 2]}, {look: {}, activity: 3}]",
+        &["error: CH-G9 has no activity 3 in v1.1"]
+    )]
+    #[case::no_such_edition(
+        "scenario: CH-G9",
+        "[{look: {}, activity: [1, 2]}]",
+        &["error: iec2022 has no CH-G9; give the case a `sweep: {edition: [...]}`"]
+    )]
+    #[case::unknown(
+        "scenario: CH-G8",
+        "[{look: {}, activity: 1}]",
+        &[
+            "error: case MY-0001 names an unknown scenario `CH-G8`",
+            "error: no case for a master is about activity 1 of CH-G9; `out_of_reach: {master: why}` says why",
+            "error: no case for a master is about activity 2 of CH-G9; `out_of_reach: {master: why}` says why",
+        ]
+    )]
+    #[case::left_out(
+        "scenario: CH-G9, sweep: {edition: [v1.1]}",
+        "[{look: {}, activity: 1}]",
+        &["error: no case for a master is about activity 2 of CH-G9; `out_of_reach: {master: why}` says why"]
+    )]
+    fn cases_and_scenarios_are_held_against_each_other(
+        #[case] head: &str,
+        #[case] steps: &str,
+        #[case] expected: &[&str],
+    ) {
+        assert_eq!(wrong(SCENARIOS, head, steps), expected);
+    }
+
+    #[test]
+    fn a_reason_that_is_none_any_more_is_told() {
+        let scenarios = SCENARIOS.replace("{device: why}", "{device: why, master: why}");
+        let told = wrong(&scenarios, "scenario: CH-G9, sweep: {edition: [v1.1]}", "[{look: {}, activity: [1, 2]}]");
+        assert_eq!(told, ["error: activity 2 of CH-G9 is out of reach of a master, but a case is about it"]);
+    }
+
+    #[rstest]
+    #[case::twice(
+        "- {scenario: A, title: t, clause: {v1.1: x}, activities: [{n: 1, from: tool, what: a}, {n: 1, edition: v1.1, from: tool, what: b}]}",
+        "activity 1 stands twice in v1.1"
+    )]
+    #[case::no_clause("- {scenario: A, title: t, activities: []}", "a scenario needs `clause")]
+    #[case::no_number(
+        "- {scenario: A, title: t, clause: {v1.1: x}, activities: [{from: tool, what: a}]}",
+        "an activity needs its number `n`"
+    )]
+    #[case::nobody(
+        "- {scenario: A, title: t, clause: {v1.1: x}, activities: [{n: 1, from: robot, what: a}]}",
+        "`robot` is no value of `from`"
+    )]
+    fn what_is_no_scenario_is_told(#[case] text: &str, #[case] expected: &str) {
+        let problems = Scenarios::parse(&source("scenarios.yaml", text.into())).expect_err("it is not sound");
+        assert!(
+            problems.iter().any(|problem| problem.render(false).contains(expected)),
+            "{}",
+            problems[0].render(false)
+        );
+    }
 }

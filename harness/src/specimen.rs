@@ -238,3 +238,81 @@ impl Memory {
         [self.before[0].as_slice(), &self.before[1]].concat()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rstest::rstest;
+
+    fn memory(edition: Edition, authenticity_1: u32) -> Memory {
+        let port = u8::from(authenticity_1 != 0);
+        let authenticity = Authenticity { authenticity_1, authenticity_2: 0, port };
+        let values = [authenticity.to_octets().to_vec(), vec![0; Protocol::OCTETS], vec![0, 0]];
+        Memory {
+            edition,
+            specimen: Specimen::Own,
+            before: values.clone(),
+            values,
+            state: State::Inactive,
+            flag: true,
+            asked: Vec::new(),
+        }
+    }
+
+    fn ask(memory: &mut Memory, index: u16, subindex: u8, data: Option<&[u8]>) -> Response {
+        memory.answer(&Open { index, subindex, data: data.map(<[u8]>::to_vec) })
+    }
+
+    fn download(memory: &mut Memory) -> Response {
+        let start = ask(memory, 0x0003, 1, Some(&[3]));
+        if start == Response::Written {
+            let own = Authenticity { authenticity_1: 7, authenticity_2: 0, port: 1 };
+            ask(memory, 0x4200, 0, Some(&own.to_octets()));
+            ask(memory, 0x4201, 0, Some(&[1; Protocol::OCTETS]));
+            ask(memory, 0x0040, 0, Some(&[2, 2]));
+            ask(memory, 0x0003, 1, Some(&[4]));
+        }
+        start
+    }
+
+    #[rstest]
+    #[case::v1_1(Edition::V1_1)]
+    #[case::iec2022(Edition::Iec2022)]
+    fn one_from_the_factory_adopts_the_whole_set(#[case] edition: Edition) {
+        let mut memory = memory(edition, 0);
+        assert_eq!(download(&mut memory), Response::Written);
+        assert_eq!(memory.transfer(), Some(Transfer::Download));
+        assert_eq!((&memory.values[1], &memory.values[2]), (&vec![1; Protocol::OCTETS], &vec![2, 2]));
+        assert_ne!(memory.records(), memory.records_before());
+    }
+
+    #[rstest]
+    #[case::v1_1_ignores_it(Edition::V1_1, Response::Written)]
+    #[case::iec2022_refuses_it(Edition::Iec2022, Response::Refused(0x8022))]
+    fn one_in_use_keeps_its_values(#[case] edition: Edition, #[case] answer: Response) {
+        let mut memory = memory(edition, 9);
+        assert_eq!(download(&mut memory), answer);
+        assert_eq!(memory.transfer(), Some(Transfer::Refused));
+        assert_eq!(memory.records(), memory.records_before());
+    }
+
+    #[test]
+    fn an_upload_has_all_records_and_its_end_before_the_verify_record() {
+        let mut memory = memory(Edition::Iec2022, 9);
+        assert_eq!(memory.transfer(), Some(Transfer::None));
+        ask(&mut memory, 0x0003, 1, Some(&[1]));
+        assert_eq!(ask(&mut memory, 0x0003, 2, None), Response::Value(vec![0x82]));
+        ask(&mut memory, 0x4200, 0, None);
+        ask(&mut memory, 0x4201, 0, None);
+        ask(&mut memory, 0x0003, 1, Some(&[2]));
+        assert_eq!(memory.transfer(), None, "a record is missing: {}", memory.told());
+        memory.begin();
+        ask(&mut memory, 0x0003, 1, Some(&[1]));
+        LIST.iter().for_each(|index| drop(ask(&mut memory, *index, 0, None)));
+        assert_eq!(memory.transfer(), None, "it has no end: {}", memory.told());
+        ask(&mut memory, 0x0003, 1, Some(&[2]));
+        assert_eq!((memory.transfer(), memory.flag), (Some(Transfer::Upload), false));
+        memory.asked.insert(0, Asked::Record);
+        assert_eq!(memory.transfer(), None, "the verify record came first: {}", memory.told());
+    }
+}

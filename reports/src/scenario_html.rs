@@ -12,7 +12,7 @@ const WIDTH: i32 = 430;
 /// Height of one message.
 const LINE: i32 = 30;
 /// Messages of one activity.
-const MESSAGES: usize = 6;
+const MESSAGES: usize = 12;
 /// Characters of a message, and of any other text.
 const LABEL: usize = 64;
 const TEXT: usize = 400;
@@ -64,8 +64,7 @@ pub fn beside(case: &CaseRecord, scenarios: &[ScenarioInfo]) -> Markup {
         .take(LISTED)
         .collect();
     let clause = scenario.clauses.iter().find(|(own, _)| own == edition).map_or("", |entry| entry.1.as_str());
-    let judged =
-        activities.iter().filter(|activity| matches!(mark(activity, case), Mark::Judged { .. })).count();
+    let judged = activities.iter().filter(|activity| matches!(mark(activity, case), Mark::Judged { .. })).count();
     html! {
         details open[activities.len() <= OPEN] {
             summary {
@@ -161,7 +160,12 @@ fn messages(step: &StepRecord, case: &CaseRecord) -> Markup {
     }
     if exchanges > 0 {
         let (master, device) = (lane("master"), lane("device"));
-        shown.push(Message { from: master, to: device, both: true, text: format!("process data, {exchanges} exchanges") });
+        shown.push(Message {
+            from: master,
+            to: device,
+            both: true,
+            text: format!("process data, {exchanges} exchanges"),
+        });
     }
     if shown.is_empty() {
         return html! {};
@@ -226,11 +230,18 @@ mod tests {
     use std::collections::BTreeMap;
 
     fn activity(number: u16, from: &str, to: &str) -> ActivityInfo {
-        ActivityInfo { number, from: from.into(), to: to.into(), what: format!("what {number}"), ..ActivityInfo::default() }
+        ActivityInfo {
+            number,
+            from: from.into(),
+            to: to.into(),
+            what: format!("what {number}"),
+            ..ActivityInfo::default()
+        }
     }
 
     fn step(activities: &[u16], executed: bool, met: Option<bool>) -> StepRecord {
-        let check = |met| crate::record::Check { key: "mode".into(), expected: "OPERATE".into(), observed: "<b>".into(), met };
+        let check =
+            |met| crate::record::Check { key: "mode".into(), expected: "OPERATE".into(), observed: "<b>".into(), met };
         StepRecord {
             text: "smi: {}".into(),
             activities: activities.to_vec(),
@@ -250,7 +261,12 @@ mod tests {
 
     #[test]
     fn an_activity_is_marked_by_what_the_case_did() {
-        let case = case(vec![step(&[1, 2], true, Some(true)), step(&[3], true, None), step(&[4], false, None), step(&[5], true, Some(false))]);
+        let case = case(vec![
+            step(&[1, 2], true, Some(true)),
+            step(&[3], true, None),
+            step(&[4], false, None),
+            step(&[5], true, Some(false)),
+        ]);
         let marks: Vec<_> = (1..=6).map(|number| mark(&activity(number, "tool", "master"), &case).said().0).collect();
         assert_eq!(marks, ["✓ judged", "✓ judged", "● done", "– not reached", "✗ judged", "– not in this case"]);
         assert_eq!(mark(&activity(9, "device", ""), &case), Mark::Foreign);

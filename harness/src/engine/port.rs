@@ -127,9 +127,8 @@ impl Engine<'_, '_> {
         let test = FS_PORT_CONFIG_LIST.field("FSP_TechParCRC").filter(|_| record == Assigned::ProtocolTest);
         let set = test.map(|field| (field, Value::Number(0))).into_iter().collect();
         let list = portconfig::list(setup, self.session.profile, &Configure { set, ..Configure::default() });
-        let (authenticity, protocol) = portconfig::verify_record(setup.edition, &list)
-            .split_at_checked(Authenticity::OCTETS)
-            .unwrap_or_default();
+        let (authenticity, protocol) =
+            portconfig::verify_record(setup.edition, &list).split_at_checked(Authenticity::OCTETS).unwrap_or_default();
         let (index, octets) = match record {
             Assigned::Authenticity => (INDEX_AUTHENTICITY, authenticity),
             Assigned::Protocol | Assigned::ProtocolTest => (INDEX_PROTOCOL, protocol),

@@ -92,7 +92,13 @@ pub fn passed(number: usize) -> CaseRecord {
         walked: Walked::default(),
         start: "waiting".into(),
         steps: vec![
-            StepRecord { text: "start: waiting".into(), activities: Vec::new(), executed: true, entries: (0, 1), checks: Vec::new() },
+            StepRecord {
+                text: "start: waiting".into(),
+                activities: Vec::new(),
+                executed: true,
+                entries: (0, 1),
+                checks: Vec::new(),
+            },
             StepRecord {
                 text: "exchange: {MCount: 1}".into(),
                 activities: Vec::new(),

@@ -227,11 +227,7 @@ fn values(key: Key) -> (Words, Option<u32>, bool) {
         ),
         Key::WakeUp => (&[], Some(1_000), false),
         Key::Record => (
-            &[
-                (Expected::Configured, "configured"),
-                (Expected::None, "none"),
-                (Expected::Right, "before OPERATE"),
-            ],
+            &[(Expected::Configured, "configured"), (Expected::None, "none"), (Expected::Right, "before OPERATE")],
             None,
             true,
         ),
