@@ -94,6 +94,7 @@ mod tests {
             dut: 0,
             role: "device".to_owned(),
             title: "A case".to_owned(),
+            scenario: String::new(),
             place: "device.yaml:1".to_owned(),
             sweep: Vec::new(),
             variant: VariantInfo::default(),

@@ -341,6 +341,7 @@ impl Run<'_> {
         });
         record.steps.push(StepRecord {
             text: format!("start: {}", planned.case.start),
+            activities: Vec::new(),
             executed: false,
             entries: (0, 0),
             checks: Vec::new(),
@@ -369,6 +370,7 @@ impl Run<'_> {
             dut: 0,
             role: case.role.to_string(),
             title: case.title.clone(),
+            scenario: case.scenario.as_ref().map(|placed| placed.0.clone()).unwrap_or_default(),
             place: case.place(),
             sweep: binding.values.clone(),
             variant: VariantInfo {

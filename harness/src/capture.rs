@@ -307,7 +307,13 @@ fn moments<'c>(steps: &[Step], judge: &Judge<'c>) -> Result<Vec<Moment<'c>>, Str
 impl<'c> Watched<'c> {
     fn end(self, channels: [bool; 3], blurred: bool) -> Judged<'c> {
         let Watched { planned, moments, judge } = self;
-        let step = |text: String, executed, checks| StepRecord { text, executed, entries: (0, 0), checks };
+        let step = |text: String, executed, checks| StepRecord {
+            text,
+            activities: Vec::new(),
+            executed,
+            entries: (0, 0),
+            checks,
+        };
         let mut steps = vec![step("start: as recorded".to_owned(), true, Vec::new())];
         let mut reasons = Vec::new();
         let mut measurements = Vec::new();

@@ -4,6 +4,7 @@ mod gateway;
 mod lines;
 mod port;
 mod reach;
+mod storage;
 
 use crate::case::model::*;
 use crate::channel::Channel;
@@ -28,12 +29,6 @@ const LIVENESS_SCL_CYCLES: u64 = 8;
 const IO_STRUCT_CRC: &str = "FSP_IO_StructCRC";
 /// How long an Event to a deviating verify record is waited for.
 const EVENT_NS: u64 = 100_000_000;
-
-/// Index of Data Storage, Subindex of its DS_Command, and commands (base standard).
-const DATA_STORAGE: u16 = 0x0003;
-const DS_COMMAND: u8 = 1;
-const DOWNLOAD_START: u8 = 0x03;
-const DOWNLOAD_END: u8 = 0x04;
 
 /// What came of a case.
 #[derive(Debug)]
@@ -78,6 +73,8 @@ pub struct Engine<'s, 'd> {
     step: usize,
     /// Octets without safety relevance in and out, as configured last.
     nsr: (u8, u8),
+    /// The Data Storage set that was copied last: Index, Subindex, value.
+    set: Vec<(u16, u8, Vec<u8>)>,
     /// ClientID of the latest SMI request.
     client: u16,
 }
@@ -94,7 +91,7 @@ impl<'s, 'd> Engine<'s, 'd> {
             measurements: Vec::new(),
             lost: false,
         };
-        Engine { session, testers, outcome, judging, checks: 0, step: 0, nsr: (0, 0), client: 0 }
+        Engine { session, testers, outcome, judging, checks: 0, step: 0, nsr: (0, 0), set: Vec::new(), client: 0 }
     }
 
     /// Runs start condition, steps and liveness check.
@@ -109,18 +106,18 @@ impl<'s, 'd> Engine<'s, 'd> {
             Role::Device => "liveness: a conformant FS-Master restores operation".to_owned(),
             Role::Master => "liveness: a conformant FS-Device and an operator restore operation".to_owned(),
         };
-        let went = self.block(name, |engine| engine.start(start)).and_then(|()| {
+        let went = self.block(name, Vec::new(), |engine| engine.start(start)).and_then(|()| {
             for (index, step) in steps.iter().enumerate() {
                 self.step = index + 1;
-                self.block(step.text.clone(), |engine| engine.step(step))?;
+                self.block(step.text.clone(), step.activities.clone(), |engine| engine.step(step))?;
             }
             self.step = steps.len() + 1;
-            self.block(liveness, Engine::liveness)
+            self.block(liveness, Vec::new(), Engine::liveness)
         });
         if let Err(Stopped) = went {
             for step in steps.iter().skip(self.outcome.steps.len().saturating_sub(1)) {
-                let record =
-                    StepRecord { text: step.text.clone(), executed: false, entries: (0, 0), checks: Vec::new() };
+                let (text, activities) = (step.text.clone(), step.activities.clone());
+                let record = StepRecord { text, activities, executed: false, entries: (0, 0), checks: Vec::new() };
                 self.outcome.steps.push(record);
             }
         }
@@ -133,10 +130,12 @@ impl<'s, 'd> Engine<'s, 'd> {
     fn block(
         &mut self,
         text: String,
+        activities: Vec<u16>,
         action: impl FnOnce(&mut Engine<'s, 'd>) -> Result<(), Stop>,
     ) -> Result<(), Stopped> {
         let first = self.session.recorded();
-        self.outcome.steps.push(StepRecord { text, executed: true, entries: (first, first), checks: Vec::new() });
+        let entries = (first, first);
+        self.outcome.steps.push(StepRecord { text, activities, executed: true, entries, checks: Vec::new() });
         self.session.events.clear();
         self.session.links.iter_mut().for_each(Link::begin);
         let result = action(self);
@@ -273,13 +272,13 @@ impl<'s, 'd> Engine<'s, 'd> {
             Action::Partner(partner) => return self.partner(partner, before),
             Action::Power(on) => self.power(*on)?,
             Action::Parameterize(asked) => self.parameterize(asked)?,
-            Action::Download { armed } => self.download(*armed)?,
             Action::Write { index, subindex, data } => {
                 self.acyclic(Stimulus::Write { index: *index, subindex: *subindex, data: data.clone() })?;
             }
             Action::Read { index, subindex } => {
                 self.acyclic(Stimulus::Read { index: *index, subindex: *subindex })?;
             }
+            Action::DataStorage(way) => self.copy(*way)?,
             Action::App(set) => self.app(set)?,
             Action::Configure(configure) => self.configure(configure)?,
             Action::Connect(connect) => self.connect(connect)?,
@@ -654,25 +653,6 @@ impl<'s, 'd> Engine<'s, 'd> {
                 self.session.link_mut().oracle.parameterized(now);
             }
         }
-        Ok(())
-    }
-
-    /// DS_Command DownloadStart; when it is taken the blocks and DownloadEnd, whatever is answered. The answer that stands
-    /// in the end is that to DownloadStart.
-    fn download(&mut self, armed: bool) -> Result<(), Stop> {
-        let command = |code| Stimulus::Write { index: DATA_STORAGE, subindex: DS_COMMAND, data: vec![code] };
-        let io_struct_crc = self.io_struct_crc()?;
-        self.acyclic(command(DOWNLOAD_START))?;
-        let started = self.session.reply.clone();
-        if started == Some(Reply::Written) {
-            let asked = Parameterize { record: Sent::None, armed, ..Parameterize::default() };
-            let (profile, mode) = (self.session.profile, self.session.setup().mode);
-            for (index, data) in parameterize::records(profile, &asked, mode, io_struct_crc) {
-                self.acyclic(Stimulus::Write { index, subindex: 0, data })?;
-            }
-            self.acyclic(command(DOWNLOAD_END))?;
-        }
-        self.session.reply = started;
         Ok(())
     }
 

@@ -59,6 +59,7 @@ pub fn judge(expectation: &Expectation, before: &Before, session: &Session<'_>, 
         Key::Mode | Key::PortPower | Key::Cq | Key::Iq | Key::WakeUp | Key::Record => {
             port::of_port(expectation, session)
         }
+        Key::DataStorage | Key::Stored => port::of_specimen(expectation, session)?,
         Key::Result | Key::Reference | Key::Length | Key::Block | Key::Field(_) => {
             port::of_result(expectation, session)
         }

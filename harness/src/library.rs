@@ -10,6 +10,7 @@ use crate::matrix::{self, Matrix};
 use crate::oracle::Tolerances;
 use crate::problem::{Problem, Source, suggestion};
 use crate::profile::Profile;
+use crate::scenario::Scenarios;
 use crate::yaml;
 use fsct_adapters::{Offer, Pco, Role};
 use fsct_protocol::{Edition, ProtMode};
@@ -24,7 +25,7 @@ fn embedded_sources() -> Vec<Arc<Source>> {
     EMBEDDED.iter().map(source).collect()
 }
 
-/// Suites, start conditions, ledger, error matrix, tolerances, limits and profiles.
+/// Suites, start conditions, ledger, error matrix, scenarios, tolerances, limits and profiles.
 #[derive(Debug)]
 pub struct Library {
     /// Suites by name.
@@ -37,6 +38,8 @@ pub struct Library {
     pub matrix: Option<Matrix>,
     /// What Annex I asks for; cases of one's own do without.
     pub annex_i: Option<AnnexI>,
+    /// The scenarios of Annex G; cases of one's own do without.
+    pub scenarios: Option<Scenarios>,
     /// Tolerances.
     pub tolerances: Tolerances,
     /// Times and electrical limits; cases of one's own do without.
@@ -110,6 +113,7 @@ impl Library {
         let mut ledger = Ledger::default();
         let mut matrix = None;
         let mut annex_i = None;
+        let mut scenarios = None;
         let mut tolerances = None;
         let mut limits = limits::Table::default();
         let mut profiles = BTreeMap::new();
@@ -134,13 +138,16 @@ impl Library {
                     gather(Matrix::parse(source), &mut problems, |found| matrix = Some(found));
                 }
                 (_, "annex-i.yaml") => gather(AnnexI::parse(source), &mut problems, |found| annex_i = Some(found)),
+                (_, "scenarios.yaml") => {
+                    gather(Scenarios::parse(source), &mut problems, |found| scenarios = Some(found));
+                }
                 (_, "tolerances.yaml") => {
                     gather(Tolerances::parse(source), &mut problems, |found| tolerances = Some(found));
                 }
                 (_, "limits.yaml") => gather(limits::parse(source), &mut problems, |found| limits = found),
                 _ => {
                     problems.push(Problem::without_place(&source.name, "is in no known place").help(
-                        "known are requirements/, suites/, profiles/, coverage/, starts.yaml, error-matrix.yaml, annex-i.yaml, tolerances.yaml and limits.yaml",
+                        "known are requirements/, suites/, profiles/, coverage/, starts.yaml, error-matrix.yaml, annex-i.yaml, scenarios.yaml, tolerances.yaml and limits.yaml",
                     ))
                 }
             }
@@ -148,9 +155,18 @@ impl Library {
         // Last, so that the first failure told is that of a suite about one thing.
         suites.sort_by_key(|suite: &Suite| suite.group.as_deref() == Some(matrix::GROUP));
         match tolerances {
-            Some(tolerances) if problems.is_empty() => {
-                Ok(Library { suites, starts, ledger, matrix, annex_i, tolerances, limits, profiles, coverage })
-            }
+            Some(tolerances) if problems.is_empty() => Ok(Library {
+                suites,
+                starts,
+                ledger,
+                matrix,
+                annex_i,
+                scenarios,
+                tolerances,
+                limits,
+                profiles,
+                coverage,
+            }),
             Some(_) => Err(problems),
             None => {
                 problems.push(Problem::without_place("testcases/tolerances.yaml", "is missing"));
@@ -258,6 +274,17 @@ impl Library {
         if let Some(annex) = &self.annex_i {
             annex.check(self.names(), &self.ledger, &mut problems);
         }
+        match &self.scenarios {
+            Some(scenarios) => scenarios.check(&self.suites, &mut problems),
+            None => {
+                for case in self.cases() {
+                    let Some((id, at)) = &case.scenario else { continue };
+                    let message = format!("case {} names the scenario `{id}`, but there are none", case.id);
+                    let remedy = "scenarios stand in testcases/scenarios.yaml";
+                    problems.push(Problem::new(&case.source, at.clone(), message).help(remedy));
+                }
+            }
+        }
         self.limits.check(&self.ledger, &mut problems);
         for requirement in self.ledger.iter() {
             let cited = cited.contains(requirement.id.as_str());
@@ -351,11 +378,9 @@ pub fn needs(steps: &[Step]) -> impl Iterator<Item = Pco> + '_ {
         {
             Some(Pco::Acyclic)
         }
-        Action::Read { .. }
-        | Action::Write { .. }
-        | Action::Download { .. }
-        | Action::Smi(_)
-        | Action::Raise { .. } => Some(Pco::Acyclic),
+        Action::Read { .. } | Action::Write { .. } | Action::DataStorage(_) | Action::Smi(_) | Action::Raise { .. } => {
+            Some(Pco::Acyclic)
+        }
         Action::Drive(_) | Action::Wake(_) | Action::Pass { after: Some(_), .. } => Some(Pco::Line),
         _ => None,
     })

@@ -4,6 +4,7 @@ use crate::case::model::KEPT;
 use crate::keeper::Keeper;
 use crate::lines::Lines;
 use crate::oracle::{App, Mismatch, Oracle, OssdeOracle, Setup};
+use crate::specimen::Memory;
 use crate::stopwatch::Stopwatch;
 use fsct_adapters::{Identity, Line, Mode, Octets, Role, Seen, Service};
 use fsct_protocol::Edition;
@@ -52,6 +53,10 @@ pub struct Link {
     pub open: Option<Open>,
     /// What was written to 0x4202 since the step began, with the mode it came in.
     pub records: Vec<(Mode, Vec<u8>)>,
+    /// What the virtual FS-Device remembers, once one was connected.
+    pub memory: Option<Memory>,
+    /// Whether a case has said which FS-Device that is.
+    pub chosen: bool,
     /// The FSPortConfigList in force.
     pub configured: Vec<u8>,
     /// Whether the SCL may start with it; `None`: nothing is judged.
@@ -100,6 +105,8 @@ impl Link {
             wake_ups: 0,
             open: None,
             records: Vec::new(),
+            memory: None,
+            chosen: false,
             configured: Vec::new(),
             starts: None,
             plugged: None,
@@ -134,6 +141,7 @@ impl Link {
     pub fn begin(&mut self) {
         self.wake_ups = 0;
         self.records.clear();
+        self.memory.iter_mut().for_each(Memory::begin);
     }
 
     /// An input service is set.

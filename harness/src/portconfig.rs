@@ -23,6 +23,12 @@ pub fn io_structure(setup: &Setup) -> IoStructure {
     IoStructure { version: 1, input: side(setup.pd_in), output: side(setup.pd_out) }
 }
 
+/// The 23 octets of an FSPortConfigList that make up the verify record.
+pub fn verify_record(edition: Edition, list: &[u8]) -> &[u8] {
+    let from = FS_PORT_CONFIG_LIST.field("FSP_Authenticity1").and_then(|field| field.offset(edition)).unwrap_or(0);
+    list.get(from..).and_then(|rest| rest.get(..23)).unwrap_or_default()
+}
+
 /// The virtual FS-Device as the list describes it.
 pub fn identity(setup: &Setup, profile: &Profile, nsr: (u8, u8)) -> Identity {
     Identity {

@@ -10,10 +10,10 @@ use rstest::rstest;
 /// Stops a program at the first access or calculation that is not sound.
 const SANITIZED: &[&str] = &["-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
 
-/// The whole suite of the role passes, and every transition is taken.
-fn conforms(url: &str, name: &str) {
+/// The whole suite of the role passes, as far as it applies to this profile, and every transition is taken.
+fn conforms(url: &str, name: &str, profile: &str) {
     let out = Folder::new(name);
-    let outcome = fsct(&["run", "--dut", url, "--out", &out.out()]);
+    let outcome = fsct(&["run", "--dut", url, "--profile", profile, "--out", &out.out()]);
     assert_eq!(outcome.code, 0, "{outcome:?}");
     let cases = out.planned();
     let told = format!("conformant: {cases} cases, {cases} pass · every transition taken");
@@ -21,19 +21,23 @@ fn conforms(url: &str, name: &str) {
 }
 
 #[rstest]
-#[case::device("device", DEVICE)]
-#[case::master("master", MASTER)]
-fn a_stack_in_c_conforms_as_a_library(#[case] name: &str, #[case] sources: &[&str]) {
+#[case::device("device", DEVICE, "device-without-storage")]
+#[case::master("master", MASTER, "master-without-storage")]
+fn a_stack_in_c_conforms_as_a_library(#[case] name: &str, #[case] sources: &[&str], #[case] profile: &str) {
     let Some(library) = build(Kind::Library, sources, &[]) else { return };
-    conforms(&format!("lib:{}", library.display()), &format!("c-lib-{name}"));
+    conforms(&format!("lib:{}", library.display()), &format!("c-lib-{name}"), profile);
 }
 
 #[rstest]
-#[case::device("device", DEVICE)]
-#[case::master("master", MASTER)]
-fn a_stack_in_c_conforms_as_a_program_and_keeps_to_its_memory(#[case] name: &str, #[case] sources: &[&str]) {
+#[case::device("device", DEVICE, "device-without-storage")]
+#[case::master("master", MASTER, "master-without-storage")]
+fn a_stack_in_c_conforms_as_a_program_and_keeps_to_its_memory(
+    #[case] name: &str,
+    #[case] sources: &[&str],
+    #[case] profile: &str,
+) {
     let Some(program) = build(Kind::Program, &[CLIENT, sources].concat(), SANITIZED) else { return };
-    conforms(&format!("exec:{}", program.display()), &format!("c-exec-{name}"));
+    conforms(&format!("exec:{}", program.display()), &format!("c-exec-{name}"), profile);
 }
 
 /// Errors by the thousand: random ones, and every corruption of up to two bits of an SPDU.
@@ -71,7 +75,7 @@ fn a_mistake_compiled_in_is_found_with_its_clause(#[case] fault: u8, #[case] cla
 fn a_stack_in_python_conforms() {
     if fsct_c::there("python3") {
         let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../adapters/python/fs_device.py");
-        conforms(&format!("exec:python3 '{script}'"), "python");
+        conforms(&format!("exec:python3 '{script}'"), "python", "device-without-storage");
     }
 }
 

@@ -6,7 +6,8 @@ use crate::decode::Side;
 use crate::duts::Duts;
 use crate::html::word;
 use crate::measured_html::of_case;
-use crate::record::{CaseRecord, Reason, RequirementRef};
+use crate::record::{CaseRecord, Reason, RequirementRef, ScenarioInfo};
+use crate::scenario_html::beside;
 use crate::story::around;
 use crate::summary::{execution_name, verdict_name};
 use crate::text::{short, visible as clean};
@@ -23,14 +24,15 @@ const LISTED: usize = 80;
 pub struct Room<'r> {
     left: Cell<usize>,
     duts: Duts<'r>,
+    scenarios: &'r [ScenarioInfo],
     /// Anchors of the cases shown in full.
     full: RefCell<BTreeSet<String>>,
 }
 
 impl<'r> Room<'r> {
-    /// A page without room yet, about these DUTs.
-    pub fn new(duts: Duts<'r>) -> Room<'r> {
-        Room { left: Cell::new(0), duts, full: RefCell::default() }
+    /// A page without room yet, about these DUTs and scenarios.
+    pub fn new(duts: Duts<'r>, scenarios: &'r [ScenarioInfo]) -> Room<'r> {
+        Room { left: Cell::new(0), duts, scenarios, full: RefCell::default() }
     }
 
     /// The DUTs of the run.
@@ -107,6 +109,7 @@ pub fn body(case: &CaseRecord, room: &Room<'_>) -> Option<Markup> {
 
 fn in_order(case: &CaseRecord, room: &Room<'_>) -> Option<Markup> {
     room.take(html! {
+        (beside(case, room.scenarios))
         (steps(case))
         @if !case.trace.is_empty() { (chart(case, Side::of(&case.role))) }
     })

@@ -36,7 +36,7 @@ pub fn render(run: &Run) -> String {
     let products = run.header.duts.iter().map(|dut| short(&dut.product, NAME)).filter(|product| !product.is_empty());
     let products = short(&products.take(DUTS).collect::<Vec<_>>().join(", "), 3 * NAME);
     let title = format!("fsct: {products}");
-    let room = Room::new(Duts::of(&run.header));
+    let room = Room::new(Duts::of(&run.header), &run.header.scenarios);
     let markup = html! {
         (DOCTYPE)
         html lang="en" {

@@ -21,6 +21,7 @@ mod measured_html;
 pub mod measurement;
 pub mod record;
 mod ruler;
+mod scenario_html;
 mod story;
 mod summary;
 mod text;

@@ -50,6 +50,45 @@ pub struct Header {
     /// What Annex I of v1.1 asks for, when the run was made to support it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub evidence: Option<Evidence>,
+    /// The scenarios of Annex G that planned cases are about.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub scenarios: Vec<ScenarioInfo>,
+}
+
+/// A scenario or chart of Annex G, in the words of the suite.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ScenarioInfo {
+    /// Its id, `CH-G1`.
+    pub id: String,
+    /// What it is about.
+    pub title: String,
+    /// Edition, then the clause that has it there.
+    pub clauses: Vec<(String, String)>,
+    /// What happens, in order.
+    pub activities: Vec<ActivityInfo>,
+}
+
+/// One thing that happens in a scenario.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ActivityInfo {
+    /// Its number; steps of cases name it.
+    pub number: u16,
+    /// The one edition that has it; empty: both.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub edition: String,
+    /// Who does it: `operator`, `tool`, `master` or `device`.
+    pub from: String,
+    /// Who it is done to; empty: it happens within `from`.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub to: String,
+    /// What is done.
+    pub what: String,
+    /// What is expected of it.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub then: String,
+    /// Why no case reaches it: role of the DUT, then the reason.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub out_of_reach: BTreeMap<String, String>,
 }
 
 /// What a machine can be led through. Transitions and steps that follow each other are written one behind the other: `T24 T22`.
@@ -315,6 +354,9 @@ pub struct CaseRecord {
     pub role: String,
     /// What it shows.
     pub title: String,
+    /// The scenario of Annex G it leads the DUT through; empty: none.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub scenario: String,
     /// File and line of the case.
     pub place: String,
     /// Values of the sweep, in order of the key.
@@ -410,6 +452,9 @@ pub struct RequirementRef {
 pub struct StepRecord {
     /// What was done, as a line of the case language.
     pub text: String,
+    /// The activities of the scenario it is about.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub activities: Vec<u16>,
     /// Whether the step was reached.
     pub executed: bool,
     /// First and one past the last entry of the trace that belong to it.

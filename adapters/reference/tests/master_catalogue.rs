@@ -312,6 +312,66 @@ fn mixed(variant: Variant, options: MasterOptions) -> Vec<(u64, Seen)> {
     tour.all
 }
 
+/// A start of the port in which the Device answers Data Storage: whether it asks for an upload, its checksum, and the ErrorType of
+/// DS_Command, if it fails.
+fn stored(tour: &mut Tour, flag: bool, checksum: u8, fails: Option<u16>) {
+    tour.bench.start_up_to_record();
+    // No start asks for more than this.
+    for _ in 0..20 {
+        tour.note();
+        let asked = tour.bench.last.iter().rev().find_map(|observation| match &observation.seen {
+            Seen::Request { index, subindex, data, .. } => Some((*index, *subindex, data.is_some())),
+            _ => None,
+        });
+        let Some(asked) = asked else { return };
+        tour.bench.respond(match (asked, fails) {
+            ((0x0003, 1, true), Some(error)) => Response::Refused(error),
+            ((_, _, true), _) => Response::Written,
+            ((0x0003, 2, _), _) => Response::Value(vec![u8::from(flag) << 7]),
+            ((0x0003, 4, _), _) => Response::Value(vec![checksum; 4]),
+            ((0x0003, 5, _), _) => Response::Value(vec![0x42, 0x00, 0, 0x42, 0x01, 0, 0, 0]),
+            _ => Response::Value(vec![1, 2, 3]),
+        });
+    }
+}
+
+/// Data Storage at every level, for commissioning, with another Device, refused, failed, and over a power cycle.
+fn storage(variant: Variant, options: MasterOptions) -> Vec<(u64, Seen)> {
+    let mut tour = Tour::new(Bench::factory_with(variant, options));
+    let at = |validation: u8| List { validation, ..list(variant) };
+    let configured = |tour: &mut Tour, list: List| {
+        tour.smi(SmiService::PortConfiguration, PORT, 0xFFF0, &list.octets());
+        tour.bench.plug(None);
+        tour.bench.plug(Some(list.identity()));
+        tour.bench.advance(12 * S);
+        tour.note();
+    };
+    let commissioning = |validation: u8| {
+        let mut list = at(validation);
+        list.protocol.tech_par_crc = 0;
+        list
+    };
+    configured(&mut tour, at(3));
+    stored(&mut tour, false, 1, None);
+    configured(&mut tour, at(4));
+    stored(&mut tour, true, 2, Some(0x8022));
+    configured(&mut tour, at(3));
+    stored(&mut tour, false, 2, None);
+    configured(&mut tour, List { device_id: 7, ..at(3) });
+    stored(&mut tour, false, 1, None);
+    configured(&mut tour, List { device_id: 8, ..at(3) });
+    stored(&mut tour, false, 1, Some(0x8000));
+    configured(&mut tour, at(2));
+    tour.bench.start_up_to_record();
+    tour.smi(SmiService::PortStatus, PORT, if variant.edition == Edition::V1_1 { 0 } else { 0x9100 }, &[0xFF, 0xF0]);
+    configured(&mut tour, commissioning(3));
+    stored(&mut tour, false, 1, None);
+    tour.bench.power(false);
+    tour.bench.power(true);
+    tour.note();
+    tour.all
+}
+
 /// Both lines of an OSSDe port: pulses, skews, faults, and the acknowledgment held and pressed.
 fn ossde(variant: Variant, options: MasterOptions) -> Vec<(u64, Seen)> {
     let mut all = Vec::new();
@@ -379,8 +439,8 @@ fn a_list_has_the_length_of_its_edition() {
 #[test]
 fn each_mutant_shows() {
     type Look = fn(Variant, MasterOptions) -> Vec<(u64, Seen)>;
-    let looks: [Look; 10] =
-        [regular, errors, timeout_behind_1, signatures, ports, sizes, starts, mixed, ossde, unanswered];
+    let looks: [Look; 11] =
+        [regular, errors, timeout_behind_1, signatures, ports, sizes, starts, mixed, ossde, unanswered, storage];
     let variants = |look: usize| {
         let pd = |mode: ProtMode| if look == 3 { mode.max_pd() as u8 } else { 3 };
         let of = move |edition, mode: ProtMode| variant(edition, mode, pd(mode));

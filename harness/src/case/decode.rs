@@ -37,9 +37,9 @@ const ACTIONS: [(&str, &[Role]); 18] = [
     ("partner", &[Role::Device, Role::Master]),
     ("power", &[Role::Device, Role::Master]),
     ("parameterize", &[Role::Device]),
-    ("download", &[Role::Device]),
     ("write", &[Role::Device]),
     ("read", &[Role::Device]),
+    ("data-storage", &[Role::Device]),
     ("app", &[Role::Device, Role::Master]),
     ("configure", &[Role::Master]),
     ("connect", &[Role::Master]),
@@ -93,7 +93,8 @@ impl Decoder<'_> {
         let expect = fields.get("expect");
         let remark = fields.get("remark");
         let measure = fields.get("measure");
-        let _note = fields.optional("note");
+        let noted = fields.optional("note").is_some();
+        let numbers = fields.texts("activity");
         fields.finish(self.problems);
         let at = match &node.value {
             Value::Map(entries) => entries.first().map_or(node.at.clone(), |(key, _)| key.at.clone()),
@@ -115,8 +116,17 @@ impl Decoder<'_> {
         let expect = expect.map(|node| self.expectations(node)).unwrap_or_default();
         let remark = remark.map(|node| self.expectations(node)).unwrap_or_default();
         let measure = measure.map(|node| self.wanted(node)).unwrap_or_default();
+        let activities = numbers.into_iter().filter_map(|number| self.activity(number)).collect();
         let port = port.unwrap_or(1) as u8;
-        Some(Step { text: crate::yaml::flow(node), at, port, action, expect, remark, measure })
+        Some(Step { activities, noted, text: crate::yaml::flow(node), at, port, action, expect, remark, measure })
+    }
+
+    fn activity(&mut self, (text, at): Placed) -> Option<u16> {
+        let number = text.parse().ok().filter(|number| (1..=99).contains(number));
+        if number.is_none() {
+            self.problem(&at, format!("`{text}` is no number of an activity, from 1 to 99"));
+        }
+        number
     }
 
     fn action(&mut self, word: &str, node: &Node) -> Option<Action> {
@@ -126,8 +136,10 @@ impl Decoder<'_> {
             "partner" => Some(self.partner(node)),
             "power" => self.word(node, &[(Action::Power(true), "on"), (Action::Power(false), "off")], "power"),
             "parameterize" => Some(Action::Parameterize(self.parameterize(node))),
-            "download" => Some(self.download(node)),
             "write" | "read" => self.acyclic(word, node),
+            "data-storage" => self
+                .word(node, &[(Way::Upload, "upload"), (Way::Download, "download")], "data-storage")
+                .map(Action::DataStorage),
             "app" => Some(self.app(node)),
             "configure" => Some(self.configure(node)),
             "connect" => self.connect(node),

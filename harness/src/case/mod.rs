@@ -45,6 +45,8 @@ pub struct Case {
     pub features: Vec<String>,
     /// Requirement records it judges.
     pub requirements: Vec<String>,
+    /// The scenario of Annex G it leads the DUT through, with the place of the name.
+    pub scenario: Option<(String, Range<usize>)>,
     /// Which side it is for.
     pub role: Role,
     /// Points of control and observation it cannot do without.
@@ -134,6 +136,7 @@ fn case(
     let title = fields.text("title");
     let _about = fields.optional("about");
     let requirements = fields.texts("requirements");
+    let scenario = fields.optional("scenario");
     let role = fields.word("dut", ROLES);
     let needs = fields.texts("needs");
     let features = fields.texts("features");
@@ -188,6 +191,7 @@ fn case(
         group: group.cloned(),
         features: features.into_iter().map(|placed| placed.0).collect(),
         requirements: requirements.into_iter().map(|placed| placed.0).collect(),
+        scenario,
         role: role?,
         needs: wanted,
         sweep,

@@ -9,7 +9,7 @@ pub use expect::{Declared, EVENT_TYPES, Expectation, Expected, Key, Outcome};
 use fsct_adapters::{Line, Service};
 use fsct_lines::{Claim, Quantity};
 pub use parameters::{Blocks, Parameterize, RecordField, Sent, Starts};
-pub use port::{Answered, Configure, Connect, ERRORS, Smi, Until, Value, blocks};
+pub use port::{Answered, Assigned, Configure, Connect, ERRORS, Smi, Specimen, Transfer, Until, Value, blocks};
 pub use spdu::{Back, Corrupt, Count, Data, Exchange, Field, Image, KEPT, PortNum, Signature};
 use std::ops::Range;
 
@@ -20,6 +20,10 @@ pub struct Step {
     pub text: String,
     /// Where it stands in its file.
     pub at: Range<usize>,
+    /// Activities of the scenario of its case that it is about.
+    pub activities: Vec<u16>,
+    /// Whether a note for the reader stands at it.
+    pub noted: bool,
     /// Port of an FS-Master it is about, from 1.
     pub port: u8,
     /// What is done.
@@ -61,11 +65,6 @@ pub enum Action {
     Power(bool),
     /// FSP parameterization from the profile: authenticity and protocol record, then the verify record.
     Parameterize(Parameterize),
-    /// A Data Storage download of the blocks of the profile, as far as the FS-Device takes it.
-    Download {
-        /// FSP_TechParCRC is the one of armed operation.
-        armed: bool,
-    },
     /// A write of on-request data.
     Write {
         /// Index.
@@ -82,6 +81,8 @@ pub enum Action {
         /// Subindex.
         subindex: u8,
     },
+    /// Data Storage as an FS-Master does it.
+    DataStorage(Way),
     /// Input services of the application.
     App(Vec<(Service, Data)>),
     /// SMI_PortConfiguration with the FSPortConfigList of the profile, and these deviations from it.
@@ -121,6 +122,15 @@ pub struct Wait {
     pub until: Duration,
     /// What the link does meanwhile.
     pub link: Meanwhile,
+}
+
+/// Which way Data Storage copies.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// From the FS-Device to the tester, which keeps the set.
+    Upload,
+    /// The set that is kept into the FS-Device.
+    Download,
 }
 
 /// What the link does while time passes.

@@ -97,6 +97,7 @@ fn execute(args: &Args) -> Result<u8, u8> {
         machines: Vec::new(),
         matrix: Vec::new(),
         evidence: None,
+        scenarios: Vec::new(),
     };
     let interrupted = AtomicBool::new(false);
     let run = Run {

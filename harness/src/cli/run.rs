@@ -14,10 +14,10 @@ use crate::yaml;
 use fsct_adapters::{Address, Description, DutError, Offer, Role, Variant};
 use fsct_iodd::Declaration;
 use fsct_protocol::Edition;
-use fsct_reports::record::{CaseRecord, DutInfo, Execution, Footer, Header, MatrixInfo, SCHEMA, Verdict};
+use fsct_reports::record::{CaseRecord, DutInfo, Execution, Footer, Header, MatrixInfo, SCHEMA, ScenarioInfo, Verdict};
 use fsct_reports::{Asked, Journal, Summary, visible};
 use indicatif::{ProgressBar, ProgressStyle};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -208,6 +208,7 @@ fn execute(args: &Args) -> Result<u8, u8> {
             .as_ref()
             .filter(|_| args.suites.iter().any(|suite| suite == annex_i::NAME))
             .map(|annex| annex.evidence(&library.ledger, |name| library.members(name))),
+        scenarios: scenarios(&library, &plans),
     };
     let interrupted = Arc::new(AtomicBool::new(false));
     for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
@@ -298,6 +299,13 @@ fn matrix(library: &Library, plans: &[Plan<'_>]) -> Vec<MatrixInfo> {
     let cases = plans.iter().flat_map(|plan| &plan.cases).map(|planned| planned.case);
     let roles: Vec<Role> = cases.filter(|case| case.group.as_deref() == Some(GROUP)).map(|case| case.role).collect();
     library.matrix.as_ref().map_or_else(Vec::new, |matrix| matrix.info(&roles))
+}
+
+/// The scenarios that planned cases are about.
+fn scenarios(library: &Library, plans: &[Plan<'_>]) -> Vec<ScenarioInfo> {
+    let cases = plans.iter().flat_map(|plan| &plan.cases).map(|planned| planned.case);
+    let wanted: BTreeSet<&str> = cases.filter_map(|case| Some(case.scenario.as_ref()?.0.as_str())).collect();
+    library.scenarios.as_ref().map_or_else(Vec::new, |scenarios| scenarios.info(&wanted))
 }
 
 /// Reaches a DUT and finds the profile for its role.

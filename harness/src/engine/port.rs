@@ -2,11 +2,14 @@
 
 use super::Engine;
 use crate::case::model::*;
+use crate::link::Open;
 use crate::portconfig;
 use crate::session::Stop;
+use crate::specimen::Memory;
 use fsct_adapters::{Identity, Line, Mode, Octets, Pco, Response, Service, SmiRequest, SmiService, Stimulus};
 use fsct_protocol::Edition;
-use fsct_protocol::smi::{FS_MASTER_ACCESS, OSSDE};
+use fsct_protocol::fsp::{Authenticity, INDEX_AUTHENTICITY, INDEX_PROTOCOL, INDEX_VERIFY};
+use fsct_protocol::smi::{FS_MASTER_ACCESS, FS_PORT_CONFIG_LIST, OSSDE};
 use fsct_reports::record::{Check, Verdict};
 
 /// Widths of a Ready pulse (Table 7), in nanoseconds.
@@ -69,6 +72,7 @@ impl Engine<'_, '_> {
         let id = smi.id.or(block.and_then(|block| block.id(edition))).filter(|_| !arguments);
         let mut octets = id.map_or_else(Vec::new, |id| id.to_be_bytes().to_vec());
         match (&smi.octets, block) {
+            _ if smi.record.is_some() => octets.extend(smi.record.into_iter().flat_map(|record| self.assigned(record))),
             (Some(own), _) => octets.extend(own),
             (None, _) if arguments => octets = vec![0; 5],
             (None, Some(_)) if smi.service == SmiService::PortConfiguration => {
@@ -108,13 +112,35 @@ impl Engine<'_, '_> {
         let mut request = self.smi_request(smi.service, octets);
         request.port = smi.port.unwrap_or(request.port);
         request.expected = smi.expected.unwrap_or(request.expected);
-        self.session.request(request)
+        self.session.request(request)?;
+        // A virtual FS-Device that a case has chosen answers what the service asks it.
+        let link = self.session.link();
+        match (link.chosen, link.open.clone()) {
+            (true, Some(open)) => self.answer(link.port, &open, Answered::Written),
+            _ => Ok(()),
+        }
+    }
+
+    /// Index, Subindex 0 and octets of a record of the profile.
+    fn assigned(&self, record: Assigned) -> Vec<u8> {
+        let setup = self.session.setup();
+        let test = FS_PORT_CONFIG_LIST.field("FSP_TechParCRC").filter(|_| record == Assigned::ProtocolTest);
+        let set = test.map(|field| (field, Value::Number(0))).into_iter().collect();
+        let list = portconfig::list(setup, self.session.profile, &Configure { set, ..Configure::default() });
+        let (authenticity, protocol) =
+            portconfig::verify_record(setup.edition, &list).split_at_checked(Authenticity::OCTETS).unwrap_or_default();
+        let (index, octets) = match record {
+            Assigned::Authenticity => (INDEX_AUTHENTICITY, authenticity),
+            Assigned::Protocol | Assigned::ProtocolTest => (INDEX_PROTOCOL, protocol),
+        };
+        [index.to_be_bytes().as_slice(), &[0], octets].concat()
     }
 
     /// A virtual FS-Device starts on the port. What was not reached in time fails as an expectation.
     pub(super) fn connect(&mut self, connect: &Connect) -> Result<(), Stop> {
         let deadline = self.session.now + self.nanoseconds(connect.within).unsigned_abs();
         let port = self.session.link().port;
+        self.choose(connect.device);
         let mut identity = portconfig::identity(self.session.setup(), self.session.profile, self.nsr);
         identity.vendor_id = connect.vendor_id.unwrap_or(identity.vendor_id);
         identity.device_id = connect.device_id.unwrap_or(identity.device_id);
@@ -127,7 +153,7 @@ impl Engine<'_, '_> {
                 pulse_at = Some(self.session.now + self.nanoseconds(connect.after).unsigned_abs());
             }
             if let Some(open) = self.session.link().open.clone() {
-                self.answer(port, open.data.is_some(), connect.record)?;
+                self.answer(port, &open, connect.record)?;
                 continue;
             }
             let now = self.session.now;
@@ -208,17 +234,27 @@ impl Engine<'_, '_> {
         self.session.pass(FINE_NS)
     }
 
-    fn answer(&mut self, port: u8, write: bool, record: Answered) -> Result<(), Stop> {
-        let response = match (record, write) {
-            (Answered::Silent, _) => {
-                self.session.link_mut().open = None;
-                return self.session.pass(FINE_NS);
-            }
-            (Answered::Refused, _) => Response::Refused(TEMPORARILY_NOT_AVAILABLE),
-            (Answered::Written, true) => Response::Written,
-            (Answered::Written, false) => Response::Value(vec![0; 2]),
-        };
+    /// The virtual FS-Device that a case asks for, or else one as the port is configured.
+    fn choose(&mut self, device: Option<Specimen>) {
+        if device.is_none() && self.session.link().chosen {
+            return;
+        }
+        let link = self.session.link();
+        let specimen = device.unwrap_or(Specimen::Own);
+        let memory = Memory::new(specimen, self.session.setup(), self.session.profile, &link.configured);
+        let link = self.session.link_mut();
+        (link.memory, link.chosen) = (Some(memory), device.is_some());
+    }
+
+    fn answer(&mut self, port: u8, open: &Open, record: Answered) -> Result<(), Stop> {
         self.session.link_mut().open = None;
+        let known = self.session.link_mut().memory.as_mut().map(|memory| memory.answer(open));
+        let response = match (record, known) {
+            (Answered::Silent, _) if open.index == INDEX_VERIFY => return self.session.pass(FINE_NS),
+            (Answered::Refused, _) if open.index == INDEX_VERIFY => Response::Refused(TEMPORARILY_NOT_AVAILABLE),
+            (_, Some(response)) => response,
+            (_, None) => Response::Refused(TEMPORARILY_NOT_AVAILABLE),
+        };
         self.session.act(Stimulus::Respond { port, response })
     }
 
@@ -276,6 +312,7 @@ impl Engine<'_, '_> {
             pulse_us: Some(750),
             after: ms(10),
             record: Answered::Written,
+            device: Some(Specimen::Own),
             vendor_id: None,
             device_id: None,
             until: Until::Operate,

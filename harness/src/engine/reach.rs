@@ -9,7 +9,7 @@ impl Engine<'_, '_> {
     /// expectation of the start condition was met.
     pub fn reach(mut self, start: &[Step], name: &str) -> (Outcome, Vec<Tester>) {
         // A stop stands in the outcome.
-        let _ = self.block(format!("start: {name}"), |engine| engine.start(start));
+        let _ = self.block(format!("start: {name}"), Vec::new(), |engine| engine.start(start));
         (self.outcome, self.testers)
     }
 }

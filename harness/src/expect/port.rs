@@ -2,11 +2,32 @@
 
 use super::{Judged, number};
 use crate::case::model::{ERRORS, Expectation, Expected, Key, Outcome, blocks};
+use crate::portconfig::verify_record;
 use crate::session::Session;
 use crate::trace::hex;
 use fsct_adapters::{Mode, SmiRequest, SmiResult};
 use fsct_protocol::Edition;
 use fsct_protocol::smi::{ArgBlock, FS_MASTER_ACCESS, FS_PORT_CONFIG_LIST, JOB_ERROR};
+
+/// What the virtual FS-Device on the port has been asked and holds; `None` before one was connected.
+pub fn of_specimen(expectation: &Expectation, session: &Session<'_>) -> Option<Judged> {
+    let link = session.link();
+    let memory = link.memory.as_ref()?;
+    Some(match &expectation.value {
+        Expected::Transfers(wanted) => {
+            let met = memory.transfer().is_some_and(|transfer| wanted.contains(&transfer));
+            (self::wanted(expectation), memory.told(), met)
+        }
+        value => {
+            let wanted = match value {
+                Expected::Unchanged => memory.records_before(),
+                _ => verify_record(session.setup().edition, &link.configured).to_vec(),
+            };
+            let held = memory.records();
+            (hex(&wanted), hex(&held), held == wanted)
+        }
+    })
+}
 
 /// What happened on the port since the step began.
 pub fn of_port(expectation: &Expectation, session: &Session<'_>) -> Judged {
@@ -28,6 +49,9 @@ pub fn of_port(expectation: &Expectation, session: &Session<'_>) -> Judged {
             let wanted = match expected {
                 Expected::None => return ("nothing written".to_owned(), observed, link.records.is_empty()),
                 Expected::Octets(octets) => octets.clone(),
+                Expected::Right if link.mode != Mode::Operate && link.records.is_empty() => {
+                    return ("no OPERATE without the record".to_owned(), format!("{observed}, {}", link.mode), true);
+                }
                 _ => verify_record(session.setup().edition, &link.configured).to_vec(),
             };
             let met = !link.records.is_empty()
@@ -35,12 +59,6 @@ pub fn of_port(expectation: &Expectation, session: &Session<'_>) -> Judged {
             (format!("{} in {}", hex(&wanted), Mode::Preoperate), observed, met)
         }
     }
-}
-
-/// The 23 octets of FSPortConfigList that make up the verify record.
-fn verify_record(edition: Edition, list: &[u8]) -> &[u8] {
-    let from = FS_PORT_CONFIG_LIST.field("FSP_Authenticity1").and_then(|field| field.offset(edition)).unwrap_or(0);
-    list.get(from..).and_then(|rest| rest.get(..23)).unwrap_or_default()
 }
 
 /// The result of the latest SMI request.
@@ -88,6 +106,10 @@ pub fn of_result(expectation: &Expectation, session: &Session<'_>) -> Judged {
             let block = block(edition, request, result);
             let field = block.and_then(|block| block.field(name));
             let seen = field.and_then(|field| field.value(edition, &result.octets));
+            if let Expected::Not(other) = expected {
+                let text = seen.map_or_else(|| "not there".to_owned(), |value| format!("0x{value:X}"));
+                return (format!("not 0x{other:X}"), text, seen.is_some_and(|seen| seen != *other));
+            }
             let right = match expected {
                 Expected::Configured => {
                     FS_PORT_CONFIG_LIST.field(name).and_then(|field| field.value(edition, &session.link().configured))

@@ -19,6 +19,7 @@ pub fn header(planned: usize) -> Header {
         machines: Vec::new(),
         matrix: Vec::new(),
         evidence: None,
+        scenarios: Vec::new(),
     }
 }
 
@@ -69,6 +70,7 @@ pub fn passed(number: usize) -> CaseRecord {
         dut: 0,
         role: "device".into(),
         title: "Start-up of both sides".into(),
+        scenario: String::new(),
         place: "testcases/suites/device-startup.yaml:4".into(),
         sweep: vec![("edition".into(), "iec2022".into()), ("mode".into(), "crc16".into()), ("pd".into(), "1".into())],
         variant: VariantInfo {
@@ -91,9 +93,16 @@ pub fn passed(number: usize) -> CaseRecord {
         walked: Walked::default(),
         start: "waiting".into(),
         steps: vec![
-            StepRecord { text: "start: waiting".into(), executed: true, entries: (0, 1), checks: Vec::new() },
+            StepRecord {
+                text: "start: waiting".into(),
+                activities: Vec::new(),
+                executed: true,
+                entries: (0, 1),
+                checks: Vec::new(),
+            },
             StepRecord {
                 text: "exchange: {MCount: 1}".into(),
+                activities: Vec::new(),
                 executed: true,
                 entries: (1, 3),
                 checks: vec![Check { key: "DCount_i".into(), expected: "6".into(), observed: "6".into(), met: true }],

@@ -1,10 +1,11 @@
 //! The reference FS-Master as a [`Dut`]: power, ports, SMI and clock around one SCL for each port.
 //!
 //! `Configure` makes it another FS-Master, fresh from the factory; a power cycle keeps the port configurations (in iec2022
-//! not those for commissioning) and nothing else. Everything that is due takes effect at the instant it was due, and before
+//! not those for commissioning), their Data Storage and nothing else. Everything that is due takes effect at the instant it was due, and before
 //! anything else that happens at that instant.
 
 mod blocks;
+mod data_storage;
 mod dead;
 mod mutant;
 mod options;

@@ -284,5 +284,27 @@ catalogue! {
             "Test pulses are not filtered."
         OssdeDiscrepancyTooShort "ossde-discrepancy-too-short", "5.4 (v1.1), 5.5 (iec2022)":
             "A skew of 1 ms is a fault already, in v1.1 too."
+        RecordBeforeDataStorage "record-before-data-storage", "8":
+            "The verify record is sent before Data Storage begins."
+        DataStorageFaultIgnored "data-storage-fault-ignored", "8":
+            "A Data Storage that the Device fails for good keeps neither the record nor OPERATE from following."
+        DataStorageInCommissioning "data-storage-in-commissioning", "G.1":
+            "Data Storage works with FSP_TechParCRC 0 as well."
+        DataStorageWithoutBackup "data-storage-without-backup", "9.4.2 (iec2022), 9.4.5.2 (v1.1)":
+            "Data Storage works at levels of Validation&Backup that have no backup."
+        UploadAtRestore "upload-at-restore", "9.4.5.5 (v1.1)":
+            "With restore alone the upload flag of the Device leads to an upload."
+        NothingUploaded "nothing-uploaded", "G.2":
+            "The parameters of an armed FS-Device are never uploaded."
+        NothingDownloaded "nothing-downloaded", "G.3":
+            "A spare FS-Device gets no parameters."
+        RefusedDownloadWithoutRecord "refused-download-without-record", "G.4":
+            "After a refused download the port goes to OPERATE without the verify record."
+        SetKeptForOtherDevice "set-kept-for-other-device", "9.4.5.4 (v1.1)":
+            "The set is kept when another VendorID or DeviceID is configured, and downloaded into that Device."
+        CommissioningKept "commissioning-kept", "G.1":
+            "In iec2022 a configuration with FSP_TechParCRC 0 outlives a power cycle of the FS-Master."
+        SclStatusInPreoperate "scl-status-in-preoperate", "10.3.5":
+            "PortStatusInfo is that of a running SCL in PREOPERATE already."
     }
 }

@@ -1,11 +1,12 @@
 //! One port of the reference FS-Master: its supply, the DL-mode handler with the Ready pulse (7.2), the Configuration Manager
-//! with the verify record (clause 8). What it shows at the gateway is in `gateway`, what it verifies in `verify`.
+//! with Data Storage and the verify record (clause 8). What it shows at the gateway is in `gateway`, what it verifies in `verify`.
 
 mod gateway;
 mod verify;
 
 use super::MasterMutant;
 use super::blocks::{PortConfig, port_mode};
+use super::data_storage::{DataStorage, Next};
 use super::ossde::Ossde;
 use super::scl::{Inputs, Outputs, Scl};
 use crate::device::{Pipeline, Sink};
@@ -42,6 +43,8 @@ enum Phase {
     WaitOnReadyPulse { until: u64, high_since: Option<u64> },
     /// EstablishCom_1: the next wake-up comes then.
     WakeUp { at: u64, done: u8 },
+    /// DS_ParamManager_2: the answer to its request has to come until then.
+    Storing { until: u64 },
     /// Send_VerifyRecord_9: the answer has to come until then.
     Record { until: u64 },
     /// PortFault_3.
@@ -68,6 +71,9 @@ pub struct PortUnit {
     mode: Mode,
     scl: Option<Scl>,
     ossde: Option<Ossde>,
+    storage: DataStorage,
+    /// With the fault `record-before-data-storage`: the record has been sent, Data Storage goes on.
+    stored: bool,
     levels: (bool, bool),
     inputs: Inputs,
     outputs: Outputs,
@@ -99,6 +105,8 @@ impl PortUnit {
             mode: Mode::Inactive,
             scl: None,
             ossde: None,
+            storage: DataStorage::new(mutant),
+            stored: false,
             levels: (false, false),
             inputs: Inputs { pd_out: Pd::safe(0), set_sd_c: false, ch_f_ack_c: false },
             outputs: Outputs::initial(pd_in),
@@ -115,7 +123,7 @@ impl PortUnit {
     pub fn power_on(&mut self, now: u64, seen: &mut Sink<'_>) {
         self.report(None, seen);
         // In iec2022 a configuration for commissioning does not survive.
-        let volatile = self.edition == Edition::Iec2022;
+        let volatile = self.edition == Edition::Iec2022 && !self.is(MasterMutant::CommissioningKept);
         let stored =
             self.config.take().filter(|config| !(volatile && config.is_safety() && config.protocol.tech_par_crc == 0));
         if let Some(config) = stored {
@@ -127,9 +135,9 @@ impl PortUnit {
     pub fn power_off(&mut self) {
         let config = self.config.take();
         let pd_in = self.outputs.pd_in.octets().len() as u8;
-        let device = self.device;
+        let (device, storage) = (self.device, self.storage.clone());
         *self = PortUnit::new(self.number, self.edition, pd_in, self.latency, self.mutant);
-        (self.config, self.device) = (config, device);
+        (self.config, self.device, self.storage) = (config, device, storage);
     }
 
     /// The port is as it came from the factory, `pd_in` octets of PDin_M; what is connected to it stays.
@@ -153,6 +161,7 @@ impl PortUnit {
             self.inputs.pd_out = Pd::safe(pd_out.into());
         }
         let (safety, off_ms) = (config.is_safety(), config.off_ms);
+        self.storage.configure(&config);
         self.config = Some(config);
         self.clear_buffers((0, 0));
         self.show(Outputs::initial(pd_in), seen);
@@ -302,18 +311,47 @@ impl PortUnit {
         }
     }
 
-    /// The Device has answered the request that is open. What it says is not looked at: a refused record shows in the SCL.
-    pub fn respond(&mut self, now: u64, _response: &Response, fscp: Option<[u8; 8]>, seen: &mut Sink<'_>) {
+    /// The Device has answered the request that is open. What it says of the record is not looked at: a refused one shows in the
+    /// SCL.
+    pub fn respond(&mut self, now: u64, response: &Response, fscp: Option<[u8; 8]>, seen: &mut Sink<'_>) {
         self.asked = None;
-        if matches!(self.phase, Phase::Record { .. }) {
-            self.operate(now, fscp, seen);
+        match self.phase {
+            Phase::Storing { .. } => {
+                let next = self.storage.answered(response);
+                let without = self.is(MasterMutant::RefusedDownloadWithoutRecord);
+                if without && matches!(response, Response::Refused(_)) && next == Next::Ready {
+                    return self.operate(now, fscp, seen);
+                }
+                self.store(now, next, fscp, seen);
+            }
+            Phase::Record { .. } if self.is(MasterMutant::RecordBeforeDataStorage) && !self.stored => {
+                self.stored = true;
+                let next = self.config.as_ref().map_or(Next::Ready, |config| self.storage.start(config));
+                self.store(now, next, fscp, seen);
+            }
+            Phase::Record { .. } => self.operate(now, fscp, seen),
+            _ => {}
+        }
+    }
+
+    /// What Data Storage comes to: its next request, the verify record (T17), or the end of the start (T6).
+    fn store(&mut self, now: u64, next: Next, fscp: Option<[u8; 8]>, seen: &mut Sink<'_>) {
+        match next {
+            Next::Ask((index, subindex, data)) => {
+                self.ask(now, index, subindex, data, seen);
+                self.phase = Phase::Storing { until: now + REQUEST_NS };
+            }
+            Next::Ready if self.stored => self.operate(now, fscp, seen),
+            Next::Ready => self.send_record(now, fscp, seen),
+            Next::Fault => self.phase = Phase::Fault,
         }
     }
 
     /// When something happens next by itself.
     pub fn due(&self) -> Option<u64> {
         let phase = match self.phase {
-            Phase::Off { until } | Phase::WaitOnReadyPulse { until, .. } | Phase::Record { until } => Some(until),
+            Phase::Off { until } | Phase::WaitOnReadyPulse { until, .. } => Some(until),
+            Phase::Storing { until } | Phase::Record { until } => Some(until),
             Phase::WakeUp { at, .. } => Some(at),
             Phase::Rest | Phase::Fault | Phase::Operate | Phase::Digital => None,
         };
@@ -355,7 +393,7 @@ impl PortUnit {
                 }
             }
             Phase::WakeUp { at, done } if at <= now => self.wake_up(now, done, fscp, seen),
-            Phase::Record { until } if until <= now => self.phase = Phase::Fault,
+            Phase::Storing { until } | Phase::Record { until } if until <= now => self.phase = Phase::Fault,
             _ => {}
         }
     }
@@ -381,7 +419,6 @@ impl PortUnit {
         let other = validated && (other_vendor || config.device_id != device.device_id);
         let cycle_compared = manual && config.cycle_time != 0 && !self.is(MasterMutant::CycleTimeNotCompared);
         let too_fast = cycle_compared && config.cycle_time < device.min_cycle_time;
-        let (safety, record) = (config.is_safety(), config.record.clone());
         if !self.is(MasterMutant::RecordInStartup) {
             self.set_mode(Mode::Preoperate, seen);
         }
@@ -389,6 +426,18 @@ impl PortUnit {
             self.phase = Phase::Fault;
             return self.port_event(INCORRECT_DEVICE, seen);
         }
+        self.stored = false;
+        if self.is(MasterMutant::RecordBeforeDataStorage) {
+            return self.send_record(now, fscp, seen);
+        }
+        let next = self.config.as_ref().map_or(Next::Ready, |config| self.storage.start(config));
+        self.store(now, next, fscp, seen);
+    }
+
+    /// Send_VerifyRecord_9 on a safety port, OPERATE on any other (T5).
+    fn send_record(&mut self, now: u64, fscp: Option<[u8; 8]>, seen: &mut Sink<'_>) {
+        let Some(config) = &self.config else { return };
+        let (safety, record) = (config.is_safety(), config.record.clone());
         let again = self.is(MasterMutant::RecordAtFirstStartOnly) && self.scl.is_some();
         if !safety || again || self.is(MasterMutant::RecordMissing) {
             return self.operate(now, fscp, seen);

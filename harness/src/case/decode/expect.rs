@@ -55,6 +55,14 @@ impl Decoder<'_> {
         if key == Key::Result {
             return self.results(text, at).map(Expected::Results);
         }
+        if key == Key::DataStorage {
+            return self.transfers(text, at).map(Expected::Transfers);
+        }
+        if matches!(key, Key::Field(_))
+            && let Some(number) = text.strip_prefix("not ").and_then(|number| number.parse().ok())
+        {
+            return Some(Expected::Not(number));
+        }
         if key == Key::EventType {
             return self.types(text, at).map(Expected::Types);
         }
@@ -131,7 +139,27 @@ impl Decoder<'_> {
         }
         Some(found)
     }
+
+    /// `none`, `upload`, `download` or `refused`, several of them with ` or ` between.
+    fn transfers(&mut self, text: &str, at: &Range<usize>) -> Option<Vec<Transfer>> {
+        let found: Option<Vec<Transfer>> = text
+            .split(" or ")
+            .map(|word| TRANSFERS.iter().find(|(_, known)| *known == word).map(|entry| entry.0))
+            .collect();
+        if found.is_none() {
+            let known: Vec<&str> = TRANSFERS.iter().map(|entry| entry.1).collect();
+            self.problem(at, format!("`{text}` is no value of `data-storage`: {}", known.join(", ")));
+        }
+        found
+    }
 }
+
+const TRANSFERS: &[(Transfer, &str)] = &[
+    (Transfer::None, "none"),
+    (Transfer::Upload, "upload"),
+    (Transfer::Download, "download"),
+    (Transfer::Refused, "refused"),
+];
 
 /// `4 octets`, `1 to 32767`, `FSP_TechParCRC 1 to 65535` or `contains 40 01`; `None`: something else.
 fn reply(text: &str) -> Option<Expected> {
@@ -200,7 +228,11 @@ fn values(key: Key) -> (Words, Option<u32>, bool) {
             false,
         ),
         Key::WakeUp => (&[], Some(1_000), false),
-        Key::Record => (&[(Expected::Configured, "configured"), (Expected::None, "none")], None, true),
+        Key::Record => (
+            &[(Expected::Configured, "configured"), (Expected::None, "none"), (Expected::Right, "before OPERATE")],
+            None,
+            true,
+        ),
         Key::Reply => (
             &[
                 (Expected::Written, "written"),
@@ -228,7 +260,8 @@ fn values(key: Key) -> (Words, Option<u32>, bool) {
             true,
         ),
         Key::Field(_) => (&[(Expected::Configured, "configured")], Some(u32::MAX), false),
-        Key::Result | Key::EventType => (&[], None, false),
+        Key::Stored => (&[(Expected::Configured, "configured"), (Expected::Unchanged, "unchanged")], None, false),
+        Key::Result | Key::DataStorage | Key::EventType => (&[], None, false),
     }
 }
 

@@ -1,7 +1,7 @@
 //! `parameterize`: the FSP records of the profile, and what is not as it says.
 
 use super::Decoder;
-use crate::case::model::{Action, Blocks, Parameterize, RecordField, Sent, Starts};
+use crate::case::model::{Blocks, Parameterize, RecordField, Sent, Starts};
 use crate::tree::Fields;
 use crate::yaml::Node;
 use fsct_protocol::fsp::VerifyRecord;
@@ -34,13 +34,6 @@ impl Decoder<'_> {
             .collect();
         let corrupt = bits.into_iter().filter_map(|(text, at)| self.record_bit(&text, &at)).collect();
         Parameterize { blocks, record, armed, set, corrupt, longer, starts }
-    }
-
-    pub(super) fn download(&mut self, node: &Node) -> Action {
-        let mut fields = Fields::new(self.source, node, "`download`", self.problems);
-        let armed = fields.optional_word("armed", YES).unwrap_or(false);
-        fields.finish(self.problems);
-        Action::Download { armed }
     }
 
     fn record_bit(&mut self, text: &str, at: &Range<usize>) -> Option<usize> {

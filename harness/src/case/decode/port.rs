@@ -11,6 +11,19 @@ use fsct_protocol::smi::FS_PORT_CONFIG_LIST;
 const LEVELS: &[(bool, &str)] = &[(false, "0"), (true, "1")];
 const ANSWERS: &[(Answered, &str)] =
     &[(Answered::Written, "written"), (Answered::Refused, "refused"), (Answered::Silent, "silent")];
+const SPECIMENS: &[(Specimen, &str)] = &[
+    (Specimen::Own, "own"),
+    (Specimen::Factory, "factory"),
+    (Specimen::Used, "used"),
+    (Specimen::Moved, "moved"),
+    (Specimen::Marked, "marked"),
+    (Specimen::Broken, "broken"),
+];
+const RECORDS: &[(Assigned, &str)] = &[
+    (Assigned::Authenticity, "authenticity"),
+    (Assigned::Protocol, "protocol"),
+    (Assigned::ProtocolTest, "protocol-test"),
+];
 const UNTIL: &[(Until, &str)] = &[
     (Until::Power, "L+"),
     (Until::WakeUp, "wake-up"),
@@ -77,6 +90,7 @@ impl Decoder<'_> {
         let pulse = fields.optional("pulse_us");
         let after = fields.optional("after");
         let record = fields.optional_word("record", ANSWERS).unwrap_or(Answered::Written);
+        let device = fields.optional_word("device", SPECIMENS);
         let vendor_id = fields.optional_number("VendorID", 0..=0xFFFF).map(|id| id as u16);
         let device_id = fields.optional_number("DeviceID", 0..=0xFF_FFFF).map(|id| id as u32);
         let until = fields.optional_word("until", UNTIL).unwrap_or(Until::Operate);
@@ -96,7 +110,7 @@ impl Decoder<'_> {
         let ms = |ms| Some(Duration { ms, ..Duration::default() });
         let after = after.map_or(ms(AFTER_MS), |text| self.duration(text))?;
         let within = within.map_or(ms(WITHIN_MS), |text| self.duration(text))?;
-        Some(Action::Connect(Connect { pulse_us, after, record, vendor_id, device_id, until, within }))
+        Some(Action::Connect(Connect { pulse_us, after, record, device, vendor_id, device_id, until, within }))
     }
 
     pub(super) fn smi(&mut self, node: &Node) -> Option<Action> {
@@ -105,6 +119,7 @@ impl Decoder<'_> {
         let port = fields.optional_number("port", 0..=255).map(|port| port as u8);
         let id = fields.optional_number("id", 0..=0xFFFF).map(|id| id as u16);
         let expected = fields.optional_number("expected", 0..=0xFFFF).map(|id| id as u16);
+        let record = fields.optional_word("record", RECORDS);
         let octets = fields.optional("octets");
         let longer = fields.optional("longer");
         let set = fields.get("set");
@@ -129,6 +144,9 @@ impl Decoder<'_> {
                 }
             },
         };
+        if record.is_some() && service != SmiService::DeviceWrite {
+            self.problem(&node.at, "`record` goes with SMI_DeviceWrite alone");
+        }
         let mut values = Vec::new();
         if let Some(node) = set {
             let yaml::Value::Map(entries) = &node.value else {
@@ -147,7 +165,7 @@ impl Decoder<'_> {
                 values.extend(self.value(&text, &at).map(|value| (key.text.clone(), value)));
             }
         }
-        let smi = Smi { service, port, id, expected, set: values, octets, longer, at: node.at.clone() };
+        let smi = Smi { service, port, id, expected, set: values, record, octets, longer, at: node.at.clone() };
         Some(Action::Smi(Box::new(smi)))
     }
 

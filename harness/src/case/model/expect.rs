@@ -1,6 +1,6 @@
 //! What a case expects to see, and where.
 
-use super::RecordField;
+use super::{RecordField, Transfer};
 use fsct_adapters::{Mode, Role};
 
 /// One thing to be seen.
@@ -73,6 +73,10 @@ pub enum Key {
     WakeUp,
     /// What was written to 0x4202 in this step.
     Record,
+    /// What Data Storage came to in this step.
+    DataStorage,
+    /// Authenticity and protocol record of the virtual FS-Device.
+    Stored,
     /// Answer to a read or write.
     Reply,
     /// Result of an SMI request.
@@ -97,7 +101,7 @@ const BOTH: &[Role] = &[Role::Device, Role::Master];
 
 impl Key {
     /// All keys as written in cases, and the side they are for; fields of ArgBlocks are `block.` and their name.
-    pub const ALL: [(Key, &'static str, &'static [Role]); 35] = [
+    pub const ALL: [(Key, &'static str, &'static [Role]); 37] = [
         (Key::DcountI, "DCount_i", DEVICE),
         (Key::SdSet, "SDset", DEVICE),
         (Key::DcommErr, "DCommErr", DEVICE),
@@ -126,6 +130,8 @@ impl Key {
         (Key::Iq, "I/Q", DEVICE),
         (Key::WakeUp, "wake-up", MASTER),
         (Key::Record, "record", MASTER),
+        (Key::DataStorage, "data-storage", MASTER),
+        (Key::Stored, "stored", MASTER),
         (Key::Reply, "reply", DEVICE),
         (Key::Result, "result", MASTER),
         (Key::Reference, "RefArgBlockID", MASTER),
@@ -158,6 +164,8 @@ impl Key {
                 | Key::Iq
                 | Key::WakeUp
                 | Key::Record
+                | Key::DataStorage
+                | Key::Stored
                 | Key::Result
                 | Key::Reference
                 | Key::Length
@@ -185,6 +193,7 @@ impl Key {
             Key::Mode | Key::PortPower | Key::WakeUp => "7.2 Table 10",
             Key::Cq | Key::Iq => "5.3.2.1 Table 4",
             Key::Record => "10.4.3.6, A.2.10",
+            Key::DataStorage | Key::Stored => "9.4",
             Key::Reply => "A.1 Table A.1",
             Key::Result | Key::Reference | Key::Length => "10.2",
             Key::Block | Key::Field(_) => "10.3",
@@ -250,6 +259,10 @@ pub enum Expected {
     None,
     /// One of these results.
     Results(Vec<Outcome>),
+    /// Any number but this.
+    Not(u32),
+    /// One of these.
+    Transfers(Vec<Transfer>),
 }
 
 /// Types of Events: bits 5 and 4 of an EventQualifier of the base standard.

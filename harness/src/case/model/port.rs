@@ -36,6 +36,8 @@ pub struct Connect {
     pub after: Duration,
     /// What the Device answers to the verify record.
     pub record: Answered,
+    /// Which FS-Device it is; `None`: the one that is there, or one as configured.
+    pub device: Option<Specimen>,
     /// VendorID, where it is not the configured one.
     pub vendor_id: Option<u16>,
     /// DeviceID, where it is not the configured one.
@@ -44,6 +46,47 @@ pub struct Connect {
     pub until: Until,
     /// The most time for it.
     pub within: Duration,
+}
+
+/// A virtual FS-Device by what it remembers.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Specimen {
+    /// It holds the records the port is configured with.
+    Own,
+    /// As it came from the factory: authenticity and port 0.
+    Factory,
+    /// In use elsewhere: another authenticity.
+    Used,
+    /// From another port of the same FS-Master.
+    Moved,
+    /// As configured, its technology parameter changed since, and asking for an upload.
+    Marked,
+    /// As configured; its Data Storage fails.
+    Broken,
+}
+
+/// What Data Storage comes to.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Transfer {
+    /// Nothing is copied.
+    None,
+    /// The whole set goes to the FS-Master, before the verify record.
+    Upload,
+    /// The whole set goes to the FS-Device, before the verify record.
+    Download,
+    /// The FS-Device does not take the set.
+    Refused,
+}
+
+/// A record that a tool writes to the FS-Device.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Assigned {
+    /// The authenticity record of the profile.
+    Authenticity,
+    /// The protocol record with FSP_TechParCRC of the profile.
+    Protocol,
+    /// The protocol record with FSP_TechParCRC 0.
+    ProtocolTest,
 }
 
 /// What a Device answers to a write.
@@ -87,6 +130,8 @@ pub struct Smi {
     pub expected: Option<u16>,
     /// Fields of the request.
     pub set: Vec<(String, Value)>,
+    /// SMI_DeviceWrite of this record.
+    pub record: Option<Assigned>,
     /// Octets behind the ArgBlockID in place of fields.
     pub octets: Option<Vec<u8>>,
     /// Octets more (or fewer) at the end of the request.

@@ -208,6 +208,7 @@ impl PortUnit {
             (Phase::Fault, _) => info::PORT_DIAG,
             (Phase::Operate, _) if self.scl.is_some() && !self.is(MasterMutant::SclStatusOperate) => info::SCL_ENABLED,
             (Phase::Operate, _) => info::OPERATE,
+            (_, Mode::Preoperate) if self.is(MasterMutant::SclStatusInPreoperate) => info::SCL_ENABLED,
             (_, Mode::Preoperate) if self.edition == Edition::V1_1 => info::PREOPERATE,
             (_, Mode::Preoperate) => info::PORT_DIAG,
             _ => info::NO_DEVICE,
