@@ -23,7 +23,7 @@ struct OnABench {
 }
 
 impl OnABench {
-    fn new(wake_up_late_ns: u64, off_ns: u64) -> Box<dyn Dut> {
+    fn boxed(wake_up_late_ns: u64, off_ns: u64) -> Box<dyn Dut> {
         let device = FsDevice::new(Options::default());
         Box::new(OnABench { device, began: Instant::now(), told_ns: 0, wake_up_late_ns, off_ns, stamps: 0 })
     }
@@ -49,7 +49,7 @@ impl Dut for OnABench {
             for observation in &mut observed[before..] {
                 self.stamps += 1;
                 observation.stimulus = position;
-                observation.at += if self.stamps % 2 == 0 { self.off_ns } else { 0 };
+                observation.at += if self.stamps.is_multiple_of(2) { self.off_ns } else { 0 };
             }
         }
         Ok(())
@@ -67,7 +67,7 @@ fn one(filter: &str, make: impl Fn() -> Box<dyn Dut>) -> CaseRecord {
 /// 2 ms after the Ready pulse OSSDe operation may have begun (v1.1: 700 us), and nobody answers.
 #[test]
 fn a_wake_up_that_comes_too_late_is_held_against_nobody() {
-    let case = one("FSD-1703", || OnABench::new(2_000_000, 0));
+    let case = one("FSD-1703", || OnABench::boxed(2_000_000, 0));
     let told = story(std::slice::from_ref(&case));
     assert_eq!((case.verdict, case.execution), (Verdict::Inconclusive, Execution::Ok), "{told}");
     assert_eq!(case.reasons.len(), 1, "{told}");
@@ -77,7 +77,7 @@ fn a_wake_up_that_comes_too_late_is_held_against_nobody() {
 /// Every second stamp 20 ms off, where 100 us are stated: the start-up ends in time by any of them, and nothing is said of it.
 #[test]
 fn a_contradicted_clock_earns_no_timing_verdict() {
-    let case = one("FSD-1701", || OnABench::new(0, 20_000_000));
+    let case = one("FSD-1701", || OnABench::boxed(0, 20_000_000));
     let told = story(std::slice::from_ref(&case));
     assert_eq!(case.verdict, Verdict::Inconclusive, "{told}");
     assert!(case.reasons.iter().any(|reason| reason.kind == "dut/clock"), "{told}");

@@ -290,7 +290,7 @@ catalogue! {
             "A Data Storage that the Device fails for good keeps neither the record nor OPERATE from following."
         DataStorageInCommissioning "data-storage-in-commissioning", "G.1":
             "Data Storage works with FSP_TechParCRC 0 as well."
-        DataStorageWithoutBackup "data-storage-without-backup", "9.4.2 (iec2022), 9.4.5.2 (v1.1)":
+        DataStorageWithoutBackup "data-storage-without-backup", "9.4.3.2 (v1.1)":
             "Data Storage works at levels of Validation&Backup that have no backup."
         UploadAtRestore "upload-at-restore", "9.4.5.5 (v1.1)":
             "With restore alone the upload flag of the Device leads to an upload."
