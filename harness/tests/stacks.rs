@@ -21,7 +21,7 @@ fn conforms(url: &str, name: &str, profile: &str) {
 }
 
 #[rstest]
-#[case::device("device", DEVICE, "device-without-storage")]
+#[case::device("device", DEVICE, "reference-device")]
 #[case::master("master", MASTER, "master-without-storage")]
 fn a_stack_in_c_conforms_as_a_library(#[case] name: &str, #[case] sources: &[&str], #[case] profile: &str) {
     let Some(library) = build(Kind::Library, sources, &[]) else { return };
@@ -29,7 +29,7 @@ fn a_stack_in_c_conforms_as_a_library(#[case] name: &str, #[case] sources: &[&st
 }
 
 #[rstest]
-#[case::device("device", DEVICE, "device-without-storage")]
+#[case::device("device", DEVICE, "reference-device")]
 #[case::master("master", MASTER, "master-without-storage")]
 fn a_stack_in_c_conforms_as_a_program_and_keeps_to_its_memory(
     #[case] name: &str,
@@ -75,7 +75,7 @@ fn a_mistake_compiled_in_is_found_with_its_clause(#[case] fault: u8, #[case] cla
 fn a_stack_in_python_conforms() {
     if fsct_c::there("python3") {
         let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../adapters/python/fs_device.py");
-        conforms(&format!("exec:python3 '{script}'"), "python", "device-without-storage");
+        conforms(&format!("exec:python3 '{script}'"), "python", "reference-device");
     }
 }
 
