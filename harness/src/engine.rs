@@ -279,6 +279,7 @@ impl<'s, 'd> Engine<'s, 'd> {
                 self.acyclic(Stimulus::Read { index: *index, subindex: *subindex })?;
             }
             Action::DataStorage(way) => self.copy(*way)?,
+            Action::Technology(other) => self.technology(*other)?,
             Action::App(set) => self.app(set)?,
             Action::Configure(configure) => self.configure(configure)?,
             Action::Connect(connect) => self.connect(connect)?,

@@ -331,6 +331,7 @@ fn reply(expectation: &Expectation, session: &Session<'_>) -> Option<Judged> {
         Expected::Octets(octets) => hex(octets),
         Expected::Configured => hex(&session.profile.authenticity().to_octets()),
         Expected::Structure => return Some(declared_structure(session)),
+        Expected::OtherTechnology => hex(&session.profile.technology.as_ref()?.other),
         Expected::Count(count) => {
             let met = matches!(&session.reply, Some(Reply::Value(octets)) if octets.len() == *count);
             return Some((format!("{count} octets read"), observed, met));

@@ -36,6 +36,7 @@ pub mod specimen;
 pub mod stopwatch;
 pub mod structure;
 pub mod tape;
+pub mod technology;
 pub mod tester;
 pub mod tours;
 pub mod trace;

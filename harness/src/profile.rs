@@ -3,6 +3,7 @@
 use crate::oracle::{Mask, Tolerances};
 use crate::problem::{Problem, Source};
 use crate::structure::Declared;
+use crate::technology::{self, Technology};
 use crate::tree::Fields;
 use crate::yaml;
 use fsct_adapters::{ClockKind, Description, Role};
@@ -77,6 +78,8 @@ pub struct Profile {
     pub no_fs_port_mode: bool,
     /// FS I/O structure of an FS-Device; `None`: not declared.
     pub structure: Option<Declared>,
+    /// A technology parameter of an FS-Device; `None`: not told.
+    pub technology: Option<Technology>,
     /// Features of the product that some requirements are limited to, such as `ossde`.
     pub features: Vec<String>,
     /// What the product's IODD declares, when one was given.
@@ -153,6 +156,8 @@ impl Profile {
         if role == Some(Role::Master) && structure.is_some() {
             fields.problem(root.at.clone(), "`FS_IO_in` and `FS_IO_out` are for an FS-Device");
         }
+        let technology = Technology::read(&mut fields, &root.at);
+        features.extend(technology.iter().map(|_| technology::FEATURE.to_owned()));
         if role == Some(Role::Device) && no_fs_port_mode {
             fields.problem(root.at.clone(), "`FS_PortMode` is for an FS-Master");
         }
@@ -206,6 +211,7 @@ impl Profile {
                 parameterization,
                 no_fs_port_mode,
                 structure,
+                technology,
                 features,
                 declaration: None,
                 tolerate,

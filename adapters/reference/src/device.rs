@@ -139,7 +139,10 @@ impl FsDevice {
         }
         let off_ns = self.off_since.map(|since| self.now - since);
         let pulse_ns = u64::from(self.options.pulse_us) * 1_000;
-        let lines = Lines::power_on(self.variant.edition, pulse_ns, self.options.mutant, self.now, off_ns);
+        let mut lines = Lines::power_on(self.variant.edition, pulse_ns, self.options.mutant, self.now, off_ns);
+        if !self.parameters.technology_fits() && self.options.mutant != Some(Mutant::OssdeWithAlteredTechnology) {
+            lines.stay_off();
+        }
         seen.push_line(Line::Power, true);
         let mut session = Session::new(self.variant, self.options, lines);
         match (self.options.mutant, self.before.take()) {

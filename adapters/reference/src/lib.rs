@@ -14,6 +14,7 @@ mod options;
 pub mod parameters;
 pub mod scl;
 mod storage;
+mod technology;
 
 pub use dead::{ConstantDevice, EchoDevice, NullDevice};
 pub use device::FsDevice;

@@ -33,6 +33,8 @@ pub(crate) struct Lines {
     /// When the next round of test pulses begins.
     round: u64,
     demand: bool,
+    /// No output is switched ON before the next power-on.
+    locked: bool,
     /// The tester wakes the device up itself.
     woken_by_tester: bool,
 }
@@ -92,12 +94,20 @@ impl Lines {
             phase: Phase::Start { ready, ossde },
             round: ossde,
             demand: false,
+            locked: false,
             woken_by_tester: false,
         };
         if !is(Mutant::OssdeNever) {
             lines.both(ossde, true);
         }
         lines
+    }
+
+    /// The self-test found that OSSDe operation would not be safe: the outputs stay OFF.
+    pub fn stay_off(&mut self) {
+        let Phase::Start { ossde, .. } = self.phase else { return };
+        self.script.retain(|edge| edge.0 < ossde);
+        self.locked = true;
     }
 
     /// The next edge that is due by `now`.
@@ -114,6 +124,7 @@ impl Lines {
         if self.script.is_empty()
             && self.phase == Phase::Ossde
             && !self.demand
+            && !self.locked
             && self.mutant != Some(Mutant::OssdeNever)
         {
             self.test_pulses();
@@ -159,7 +170,7 @@ impl Lines {
     pub fn demand(&mut self, now: u64, demand: bool) {
         if self.demand != demand {
             self.demand = demand;
-            if self.phase == Phase::Ossde && self.mutant != Some(Mutant::OssdeNever) {
+            if self.phase == Phase::Ossde && !self.locked && self.mutant != Some(Mutant::OssdeNever) {
                 self.script.clear();
                 self.both(now, !demand);
             }

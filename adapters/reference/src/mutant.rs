@@ -347,6 +347,12 @@ catalogue! {
             "An application reset resets authenticity and protocol parameters."
         RestoreFactoryTaken "restore-factory-taken", "E.3.3, iec2022":
             "Restore factory settings of v1.1 is implemented."
+        TechnologyUnverified "technology-unverified", "11.7.8, 10.4.3.1":
+            "FSP_TechParCRC is compared with the stored value, not with the technology parameters it stands for."
+        TechnologyForgotten "technology-forgotten", "10.4.3.1":
+            "A technology parameter is answered as written and stays as it was."
+        OssdeWithAlteredTechnology "ossde-with-altered-technology", "G.1 Table G.1":
+            "OSSDe operation begins with technology parameters that FSP_TechParCRC was not made for."
         DownloadAdoptedInUse "download-adopted-in-use", "11.7.6":
             "A device in use adopts a Data Storage download."
         DownloadNotAdopted "download-not-adopted", "11.7.6":

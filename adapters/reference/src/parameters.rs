@@ -2,11 +2,12 @@
 //! and the checks at FSP_VerifyRecord.
 //!
 //! The authenticity and protocol blocks survive power cycles. The checks are the same whether FSP_TechParCRC is 0 or not:
-//! 11.5.7 lets no deviating block start the SCL, and Table E.2 (v1.1: E.3) no default authenticity. This device holds
-//! no technology parameters (FST), so their signature is compared with the stored one alone.
+//! 11.5.7 lets no deviating block start the SCL, and Table E.2 (v1.1: E.3) no default authenticity. An armed device compares
+//! FSP_TechParCRC with the signature over its technology parameter as well.
 
 use crate::Mutant;
 use crate::storage::{self, Blocks, Transfer};
+use crate::technology::{self, Technology};
 use fsct_adapters::Variant;
 use fsct_protocol::Edition;
 use fsct_protocol::crc::{crc16, crc32};
@@ -80,8 +81,6 @@ mod index {
 const PROT_VERSION: u8 = 0x01;
 const DEFAULT_WATCHDOG_MS: u16 = 100;
 const WATCHDOG_RANGE_MS: (u16, u16) = (1, u16::MAX);
-/// The signature over no technology parameters at all is 0, and 0 becomes 1 (A.2.8). Not 0 as Table G.1 asks.
-const FACTORY_TECH_PAR_CRC: u32 = 1;
 /// In units of 10 ms: 500 ms.
 const TIME_TO_READY: u16 = 50;
 /// In units of 10 ms: 1 s.
@@ -127,6 +126,7 @@ pub struct Parameters {
     mutant: Option<Mutant>,
     authenticity: Authenticity,
     protocol: Protocol,
+    technology: Technology,
     transfer: Transfer,
 }
 
@@ -142,10 +142,20 @@ impl Parameters {
                 mode: variant.mode.code(),
                 watchdog_ms: DEFAULT_WATCHDOG_MS,
                 io_struct_crc: io_struct_crc(variant, mutant),
-                tech_par_crc: if mutant == Some(Mutant::FactoryTechParCrc0) { 0 } else { FACTORY_TECH_PAR_CRC },
+                tech_par_crc: if mutant == Some(Mutant::FactoryTechParCrc0) {
+                    0
+                } else {
+                    Technology::default().signature()
+                },
             },
+            technology: Technology::default(),
             transfer: Transfer::Inactive,
         }
+    }
+
+    /// Whether the technology parameter is the one FSP_TechParCRC was made for; in commissioning it always is.
+    pub fn technology_fits(&self) -> bool {
+        matches!(self.protocol.tech_par_crc, 0) || self.protocol.tech_par_crc == self.technology.signature()
     }
 
     /// The supply is gone: so is a transfer that was under way.
@@ -196,6 +206,7 @@ impl Parameters {
             index::WCDT if edition == Edition::Iec2022 => item(&WCDT_MS.to_be_bytes(), &[], subindex),
             index::OFDT if edition == Edition::Iec2022 => item(&OFDT_MS.to_be_bytes(), &[], subindex),
             storage::INDEX => self.transfer.read(subindex, &self.blocks()),
+            technology::INDEX => item(&self.technology.0, &[4], subindex),
             index::SYSTEM_COMMAND => Err(error_type::ACCESS_DENIED),
             index::ACCESS_LOCK => item(&[0, if self.is(Mutant::AccessLocked) { 2 } else { 0 }], &[], subindex),
             index::PROFILES if self.is(Mutant::ProfileMissing) => item(&[0, 1], &[2], subindex),
@@ -249,6 +260,15 @@ impl Parameters {
                 })?;
                 Ok(adopted.map_or(Written::Nothing, |blocks| self.keep(blocks)))
             }
+            technology::INDEX => {
+                whole(subindex)?;
+                of_length(data, 4, 4)?;
+                let value = data.try_into().map_err(|_| error_type::LENGTH_UNDERRUN)?;
+                if self.is(Mutant::TechnologyForgotten) {
+                    return Ok(Written::Nothing);
+                }
+                Ok(self.take_without_restart(|blocks| blocks.technology = Technology(value)))
+            }
             index::SYSTEM_COMMAND => {
                 whole(subindex)?;
                 self.reset(only(data)?)?;
@@ -296,13 +316,20 @@ impl Parameters {
         }
     }
 
+    /// The same for what a running SCL does not hang on: FST change at once.
+    fn take_without_restart(&mut self, change: impl FnOnce(&mut Blocks)) -> Written {
+        self.take(change);
+        Written::Nothing
+    }
+
     fn blocks(&self) -> Blocks {
-        Blocks { authenticity: self.authenticity, protocol: self.protocol }
+        Blocks { authenticity: self.authenticity, protocol: self.protocol, technology: self.technology }
     }
 
     fn keep(&mut self, blocks: Blocks) -> Written {
         self.authenticity = blocks.authenticity;
         self.protocol = blocks.protocol;
+        self.technology = blocks.technology;
         Written::Block
     }
 
@@ -311,8 +338,7 @@ impl Parameters {
         unassigned(&self.authenticity) && self.authenticity.port == 0 || self.is(Mutant::DownloadAdoptedInUse)
     }
 
-    /// A SystemCommand: the resets of the edition, in commissioning alone. There are no technology parameters that an
-    /// application reset could change.
+    /// A SystemCommand: the resets of the edition, in commissioning alone. An application reset concerns the technology parameter.
     fn reset(&mut self, command: u8) -> Result<(), u16> {
         let all = match (self.variant.edition, command) {
             (Edition::V1_1, 0x82) | (Edition::Iec2022, 0x83) => true,
@@ -323,6 +349,7 @@ impl Parameters {
         if self.protocol.tech_par_crc != 0 && !self.is(Mutant::ResetWhenArmed) {
             return Err(error_type::FUNCTION_UNAVAILABLE);
         }
+        self.technology = Technology::default();
         if all {
             let authenticity = self.authenticity;
             *self = Parameters::factory(self.variant, self.mutant);
@@ -385,6 +412,7 @@ impl Parameters {
             (block.watchdog_ms != 0, event_code::WATCHDOG),
             (block.io_struct_crc == io_struct_crc(self.variant, self.mutant), event_code::IO_STRUCT_CRC),
             (block.tech_par_crc == self.protocol.tech_par_crc, event_code::TECH_PAR_CRC),
+            (self.technology_fits() || self.is(Mutant::TechnologyUnverified), event_code::TECH_PAR_CRC),
             (self.supports(&block) && block == self.protocol, crc_code),
         ];
         match checks.into_iter().find(|(good, _)| !good) {

@@ -1,10 +1,12 @@
-//! Data Storage of the reference FS-Device: Index 0x0003 of the base standard over the blocks 0x4200 and 0x4201.
+//! Data Storage of the reference FS-Device: Index 0x0003 of the base standard over the blocks 0x4200 and 0x4201 and the
+//! technology parameter.
 //!
 //! A download is adopted only by a device whose authenticity and port are 0, and only at its end. One in use answers
 //! its start with [`error_type::TEMPORARILY_UNAVAILABLE`] (iec2022, Table 13 T8), or takes and ignores it (v1.1, which
 //! defines no code). An upload is always answered: arming needs it.
 
 use crate::parameters::error_type;
+use crate::technology::{self, Technology};
 use fsct_protocol::Edition;
 use fsct_protocol::crc::crc32;
 use fsct_protocol::fsp::{Authenticity, INDEX_AUTHENTICITY, INDEX_PROTOCOL, Protocol};
@@ -12,8 +14,8 @@ use fsct_protocol::fsp::{Authenticity, INDEX_AUTHENTICITY, INDEX_PROTOCOL, Proto
 /// Index of the Data Storage object.
 pub const INDEX: u16 = 0x0003;
 
-/// Both blocks with Index, Subindex and length of each.
-const SIZE: u32 = (2 * 4 + Authenticity::OCTETS + Protocol::OCTETS) as u32;
+/// All of them with Index, Subindex and length of each.
+const SIZE: u32 = (3 * 4 + Authenticity::OCTETS + Protocol::OCTETS + 4) as u32;
 
 /// What one download or the device itself holds.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -22,6 +24,8 @@ pub struct Blocks {
     pub authenticity: Authenticity,
     /// Index 0x4201.
     pub protocol: Protocol,
+    /// The technology parameter.
+    pub technology: Technology,
 }
 
 /// The transfer that is under way.
@@ -78,13 +82,16 @@ impl Transfer {
             }]),
             3 => Ok(SIZE.to_be_bytes().to_vec()),
             4 => {
-                let blocks = [&stored.authenticity.to_octets()[..], &stored.protocol.to_octets()[..]].concat();
+                let (authenticity, protocol) = (stored.authenticity.to_octets(), stored.protocol.to_octets());
+                let blocks = [&authenticity[..], &protocol[..], &stored.technology.0[..]].concat();
                 Ok(crc32(0, &blocks).to_be_bytes().to_vec())
             }
             5 => {
                 let [auth_1, auth_0] = INDEX_AUTHENTICITY.to_be_bytes();
                 let [prot_1, prot_0] = INDEX_PROTOCOL.to_be_bytes();
-                Ok(vec![auth_1, auth_0, 0, prot_1, prot_0, 0, 0, 0])
+                let [tech_1, tech_0] = technology::INDEX.to_be_bytes();
+                // Ends with Index 0.
+                Ok(vec![auth_1, auth_0, 0, prot_1, prot_0, 0, tech_1, tech_0, 0, 0, 0])
             }
             _ => Err(error_type::SUBINDEX_NOT_AVAILABLE),
         }

@@ -31,7 +31,7 @@ const BACKS: &[(Back, &str)] = &[
     (Back::Late, "late"),
 ];
 /// The words for the action of a step, and the side they are for.
-const ACTIONS: [(&str, &[Role]); 18] = [
+const ACTIONS: [(&str, &[Role]); 19] = [
     ("exchange", &[Role::Device, Role::Master]),
     ("wait", &[Role::Device, Role::Master]),
     ("partner", &[Role::Device, Role::Master]),
@@ -40,6 +40,7 @@ const ACTIONS: [(&str, &[Role]); 18] = [
     ("write", &[Role::Device]),
     ("read", &[Role::Device]),
     ("data-storage", &[Role::Device]),
+    ("technology", &[Role::Device]),
     ("app", &[Role::Device, Role::Master]),
     ("configure", &[Role::Master]),
     ("connect", &[Role::Master]),
@@ -140,6 +141,11 @@ impl Decoder<'_> {
             "data-storage" => self
                 .word(node, &[(Way::Upload, "upload"), (Way::Download, "download")], "data-storage")
                 .map(Action::DataStorage),
+            "technology" => self.word(
+                node,
+                &[(Action::Technology(true), "other"), (Action::Technology(false), "declared")],
+                "technology",
+            ),
             "app" => Some(self.app(node)),
             "configure" => Some(self.configure(node)),
             "connect" => self.connect(node),

@@ -83,6 +83,8 @@ pub enum Action {
     },
     /// Data Storage as an FS-Master does it.
     DataStorage(Way),
+    /// A write of the technology parameter of the profile; `true`: of its other value.
+    Technology(bool),
     /// Input services of the application.
     App(Vec<(Service, Data)>),
     /// SMI_PortConfiguration with the FSPortConfigList of the profile, and these deviations from it.

@@ -1,4 +1,4 @@
-//! Data Storage of an FS-Device as an FS-Master does it: Index 0x0003 of the base standard.
+//! Data Storage of an FS-Device as an FS-Master does it, Index 0x0003 of the base standard, and its technology parameter.
 
 use super::Engine;
 use crate::case::model::{Parameterize, Sent, Way};
@@ -62,6 +62,22 @@ impl Engine<'_, '_> {
         let asked = Parameterize { record: Sent::None, armed: true, ..Parameterize::default() };
         let records = parameterize::records(self.session.profile, &asked, self.session.setup().mode, io_struct_crc);
         Ok(records.into_iter().map(|(index, data)| (index, 0, data)).collect())
+    }
+
+    /// Writes the technology parameter of the profile and reads it back: the reply. A product that does not take it is not the one
+    /// of its profile.
+    pub(super) fn technology(&mut self, other: bool) -> Result<(), Stop> {
+        let Some(technology) = &self.session.profile.technology else {
+            return Err(Stop::Unserved("a technology parameter: the profile tells none".to_owned()));
+        };
+        let data = if other { technology.other.clone() } else { technology.value.clone() };
+        let index = technology.index;
+        self.acyclic(Stimulus::Write { index, subindex: 0, data })?;
+        if self.session.reply != Some(Reply::Written) {
+            let replied = self.session.replied();
+            return Err(Stop::Unserved(format!("the technology parameter 0x{index:04X} was not taken: {replied}")));
+        }
+        self.acyclic(Stimulus::Read { index, subindex: 0 })
     }
 
     fn commanded(&mut self, command: u8) -> Result<bool, Stop> {

@@ -239,6 +239,7 @@ fn values(key: Key) -> (Words, Option<u32>, bool) {
                 (Expected::Refused, "refused"),
                 (Expected::Configured, "authenticity"),
                 (Expected::Structure, "structure"),
+                (Expected::OtherTechnology, "other"),
                 (Expected::Declared(Declared::Protocol), "iodd.FSP_Protocol"),
                 (Expected::Declared(Declared::TimeToReady), "iodd.FSP_TimeToReady"),
                 (Expected::Declared(Declared::MinShutDownTime), "iodd.FSP_MinShutDownTime"),

@@ -221,6 +221,8 @@ pub enum Expected {
     Padded,
     /// The protocol record with the FSP_IO_StructCRC of the declared structure.
     Structure,
+    /// The other value of the technology parameter of the profile.
+    OtherTechnology,
     /// All octets 0 or as before the step: nothing of what came is used.
     Withheld,
     /// An SPDU with right signature.
