@@ -65,21 +65,12 @@ pub struct Selection {
 }
 
 impl Selection {
-    /// Whether the suite of a case is among those asked for, or nothing is asked for.
-    fn names(&self, case: &Case) -> bool {
-        let group = case.group.as_ref();
-        self.suites.is_empty()
-            || self.suites.contains(&case.suite)
-            || group.is_some_and(|group| self.suites.contains(group))
-    }
-
     /// Whether a case is selected. A term is `suite:NAME`, `req:R-...`, `covers:T25`, or a text that occurs in the key or
     /// title, with `*` for anything in between.
     pub fn matches(&self, planned: &Planned<'_>) -> bool {
         let Planned { case, key, binding } = planned;
         let group = case.group.as_ref();
-        self.names(case)
-            && self.edition.is_none_or(|edition| binding.variant.edition == edition)
+        self.edition.is_none_or(|edition| binding.variant.edition == edition)
             && self.filter.iter().all(|term| match term.split_once(':') {
                 Some(("suite", name)) => case.suite == name || group.is_some_and(|group| group == name),
                 Some(("req", id)) => case.requirements.iter().any(|known| known == id),
@@ -111,11 +102,17 @@ pub fn plan<'l>(
     description: &Description,
 ) -> Result<Plan<'l>, Problem> {
     let mut plan = Plan::default();
-    // Whoever names nothing, or suites for both roles, wants what the DUT is for; whoever names what is for the other role
+    // Whoever names nothing, or something for both roles, wants what the DUT is for; whoever names what is for the other role
     // alone is told why it does not apply.
-    let own = |case: &&Case| case.role == description.role;
-    let all = selection.filter.is_empty() && library.cases().filter(own).any(|case| selection.names(case));
-    for case in library.cases().filter(|case| !all || own(case)) {
+    let asked: Vec<Vec<String>> = selection.suites.iter().map(|name| library.members(name)).collect();
+    let names = |members: &Vec<String>, case: &Case| members.contains(&case.suite);
+    let own = |case: &Case| case.role == description.role;
+    let of_both = |members: &Vec<String>| library.cases().any(|case| own(case) && names(members, case));
+    let wanted = |case: &&Case| {
+        let mut by = asked.iter().filter(|members| names(members, case)).peekable();
+        (asked.is_empty() || by.peek().is_some()) && (own(case) || !selection.filter.is_empty() || !by.all(of_both))
+    };
+    for case in library.cases().filter(wanted) {
         let offers = match profile.structure.filter(|_| of_structure(case)) {
             Some(structure) => structure.narrowed(&description.offers),
             None => description.offers.clone(),

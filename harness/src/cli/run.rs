@@ -133,7 +133,7 @@ fn execute(args: &Args) -> Result<u8, u8> {
             }
             selection.suites.push(name);
         } else if library.names().any(|known| known == *suite) {
-            selection.suites.extend(library.members(suite));
+            selection.suites.push(suite.clone());
         } else {
             let help = suggestion(suite, library.names());
             return Err(fail(USAGE, format!("there is no suite `{suite}`; {help}")));
