@@ -10,7 +10,7 @@ use crate::matrix::{self, Matrix};
 use crate::oracle::Tolerances;
 use crate::problem::{Problem, Source, suggestion};
 use crate::profile::Profile;
-use crate::scenario::Scenarios;
+use crate::scenario::{self, Scenarios};
 use crate::yaml;
 use fsct_adapters::{Offer, Pco, Role};
 use fsct_protocol::{Edition, ProtMode};
@@ -153,7 +153,11 @@ impl Library {
             }
         }
         // Last, so that the first failure told is that of a suite about one thing.
-        suites.sort_by_key(|suite: &Suite| suite.group.as_deref() == Some(matrix::GROUP));
+        suites.sort_by_key(|suite: &Suite| match suite.group.as_deref() {
+            Some(matrix::GROUP) => 2,
+            Some(scenario::GROUP) => 1,
+            _ => 0,
+        });
         match tolerances {
             Some(tolerances) if problems.is_empty() => Ok(Library {
                 suites,

@@ -14,6 +14,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
 
+/// Group of the suites whose cases lead through scenarios.
+pub const GROUP: &str = "annex-g";
+
 /// Who takes part, as written; the charts of the reports draw them in this order.
 const ACTORS: &[(&str, &str)] =
     &[("operator", "operator"), ("tool", "tool"), ("master", "master"), ("device", "device")];

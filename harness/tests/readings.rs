@@ -262,7 +262,9 @@ fn judged(way: Way) -> Vec<CaseRecord> {
     let profile = if way.starts_late { "device-slow-start" } else { "reference-device" };
     let mut library = library();
     // The rows know nothing of parameters: any record starts the SCL here.
-    library.suites.retain(|suite| suite.name != "device-parameters");
+    const PARAMETERS: [&str; 4] =
+        ["device-parameters", "device-indices", "device-data-storage", "device-verify-record"];
+    library.suites.retain(|suite| !PARAMETERS.contains(&&*suite.name) && suite.group.as_deref() != Some("annex-g"));
     run_with(&library, &Selection::default(), profile, || Box::new(TableDevice::new(way)))
 }
 

@@ -111,7 +111,8 @@ fn what_varies_on_the_way_to_a_real_clock_is_uncertain() {
     let dut = &header["header"]["dut"][0];
     let number = |value: &Value| value.as_u64().expect("a number");
     let (min, max) = (number(&dut["round_trip"]["min_ns"]), number(&dut["round_trip"]["max_ns"]));
-    assert_eq!(number(&dut["uncertainty_ns"]), OWN_UNCERTAINTY_NS + (max - min) / 2);
+    // More where the loop-back, on a machine that has other work, shows less than the DUT states.
+    assert!(number(&dut["uncertainty_ns"]) >= OWN_UNCERTAINTY_NS + (max - min) / 2);
 }
 
 /// The same Ready pulse of 550 us, 50 us inside its limit: time stamps behind a line do not tell, a recording does.
