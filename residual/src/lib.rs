@@ -9,12 +9,14 @@
 //! A start value and the step from 0 to 1 are affine or touch one signature in 2^width, and are no part of these numbers.
 //! No I/O, no clock.
 
+mod claims;
 mod code;
 mod enumerate;
 mod probability;
 mod proper;
 mod weights;
 
+pub use claims::{BIT_ERROR, Claim, MONITOR_HOURS, PER_HOUR, SHARE, Verdict};
 pub use code::{CRC_16, CRC_32, Code, MOST_OCTETS, Unsuitable};
 pub use enumerate::{Progress, distributions, dual_weights};
 pub use probability::Hump;
