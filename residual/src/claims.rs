@@ -10,6 +10,8 @@ pub const BIT_ERROR: f64 = 1e-2;
 pub const PER_HOUR: f64 = 1000.0 * 3600.0;
 /// Hours in which one detected error is permitted (11.4.7; PFH-Monitor time, Table 41, the same for both modes).
 pub const MONITOR_HOURS: f64 = 10.0;
+/// Transfers of the FSP parameters an hour: one a day (11.5.6.2).
+pub const BLOCKS_PER_HOUR: f64 = 1.0 / 24.0;
 /// Residual errors an hour that a logical connection may have: 1 % of the 1E-7 of SIL 3 (11.4.7).
 pub const SHARE: f64 = 1e-9;
 
@@ -107,5 +109,10 @@ impl Weights {
     /// there are `Rp / detected` undetected ones, whatever the rate of SPDUs is.
     pub fn monitored_rate(&self) -> f64 {
         self.residual(BIT_ERROR) / self.detected(BIT_ERROR) / MONITOR_HOURS
+    }
+
+    /// Undetected errors an hour of a parameter block, at [`BLOCKS_PER_HOUR`] and [`BIT_ERROR`].
+    pub fn block_rate(&self) -> f64 {
+        self.residual(BIT_ERROR) * BLOCKS_PER_HOUR
     }
 }

@@ -16,7 +16,7 @@ mod probability;
 mod proper;
 mod weights;
 
-pub use claims::{BIT_ERROR, Claim, MONITOR_HOURS, PER_HOUR, SHARE, Verdict};
+pub use claims::{BIT_ERROR, BLOCKS_PER_HOUR, Claim, MONITOR_HOURS, PER_HOUR, SHARE, Verdict};
 pub use code::{CRC_16, CRC_32, Code, MOST_OCTETS, Unsuitable};
 pub use enumerate::{Progress, distributions, dual_weights};
 pub use probability::Hump;

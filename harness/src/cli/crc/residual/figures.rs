@@ -2,7 +2,7 @@
 
 use super::{Found, Survey, name};
 use fsct_reports::{Bound, Curve, Plot, plots};
-use fsct_residual::{BIT_ERROR, MONITOR_HOURS, PER_HOUR, Properness, SHARE};
+use fsct_residual::{BIT_ERROR, BLOCKS_PER_HOUR, MONITOR_HOURS, PER_HOUR, Properness, SHARE};
 use serde_json::{Value, json};
 
 /// Bit error probabilities that Rp is told at.
@@ -33,7 +33,7 @@ pub fn json(surveys: &[Survey]) -> Value {
     json!({
         "assumed": {
             "bit_error_probability": BIT_ERROR, "spdus_per_hour": PER_HOUR, "hours_per_detected_error": MONITOR_HOURS,
-            "share_per_hour": SHARE,
+            "blocks_per_hour": BLOCKS_PER_HOUR, "share_per_hour": SHARE,
         },
         "codes": codes.collect::<Vec<_>>(),
     })
@@ -65,6 +65,7 @@ fn length(Found { weights, properness, hump }: &Found) -> Value {
         "hump": hump.map(|hump| json!({"p": hump.at, "residual": hump.highest, "above_limit_from_p": hump.from})),
         "unmonitored_per_hour": weights.unmonitored_rate(),
         "monitored_per_hour": weights.monitored_rate(),
+        "block_per_hour": weights.block_rate(),
         "verdicts": verdicts,
         "ones_code_words_dual_words": counts.collect::<Vec<_>>(),
     })
