@@ -1,7 +1,9 @@
 //! Counts against words written down one by one, and against figures that another program computed.
 
 use fsct_protocol::crc::{crc16, crc32};
-use fsct_residual::{CRC_16, CRC_32, Code, Properness, Unsuitable, Weights, distributions, dual_weights, macwilliams};
+use fsct_residual::{
+    BIT_ERROR, CRC_16, CRC_32, Code, Properness, Unsuitable, Verdict, Weights, distributions, dual_weights, macwilliams,
+};
 use proptest::prelude::*;
 use rstest::rstest;
 use std::collections::BTreeMap;
@@ -253,4 +255,37 @@ fn the_longest_word_is_possible() {
     assert_eq!(weights.code_weights().iter().sum::<num_bigint::BigUint>().bits(), 1024 - 16 + 1);
     let half = weights.residual(0.5);
     assert!((half / weights.limit() - 1.0).abs() < 1e-12, "{half:e}");
+}
+
+/// The rates are those at the largest bit error probability to be assumed; not so where Rp falls before it.
+#[rstest]
+#[case("crc16", 7, true)]
+#[case("crc32", 31, true)]
+#[case("crc16", 79, false)]
+fn rates_are_those_of_the_worst_bit_error_probability(#[case] name: &str, #[case] octets: usize, #[case] last: bool) {
+    let weights = weights(name, octets);
+    let (residual, detected) = (weights.residual(BIT_ERROR), weights.detected(BIT_ERROR));
+    for (rate, at_last) in [
+        (weights.unmonitored_rate(), residual * 3.6e6),
+        (weights.monitored_rate(), residual / detected / 10.0),
+        (weights.block_rate(), residual / 24.0),
+    ] {
+        assert!(
+            if last { (rate / at_last - 1.0).abs() < 1e-12 } else { rate > 2.0 * at_last },
+            "{rate:e}, {at_last:e}"
+        );
+    }
+}
+
+#[rstest]
+#[case("crc16", 7, [Verdict::Holds, Verdict::Holds, Verdict::Broken])]
+#[case("crc16", 5, [Verdict::Holds, Verdict::Holds, Verdict::Holds])]
+#[case("crc16", 16, [Verdict::Holds, Verdict::Beyond, Verdict::Within])]
+#[case("crc16", 17, [Verdict::Beyond, Verdict::Beyond, Verdict::Within])]
+#[case("crc32", 31, [Verdict::Holds, Verdict::Within, Verdict::Holds])]
+fn statements_beside_what_is(#[case] name: &str, #[case] octets: usize, #[case] expected: [Verdict; 3]) {
+    let weights = weights(name, octets);
+    let claim = code(name).claim().expect("a code of the standard");
+    let properness = claim.of_properness(octets, weights.properness());
+    assert_eq!([claim.of_distance(&weights), claim.of_residual(&weights), properness], expected);
 }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 /// What the figures rest on.
 const ASSUMED: &str = "\
-Rates are undetected errors an hour with every bit wrong with p = 1E-2, the most to be assumed (11.4.7; binary symmetric channel):
+Rates are undetected errors an hour at the worst bit error probability p up to 1E-2 (11.4.7; binary symmetric channel):
   at 1000/s  1000 SPDU/s, the most there may be, without a trip at detected errors: no system goes on like that
   monitored  one detected error in 10 h, each of which trips (11.4.7, Table 41): Rp / detected / 10 h, our formula; share is its part
              of the 1E-9 /h that a connection may have, 1 % of SIL 3
