@@ -138,10 +138,12 @@ impl Plot {
     fn bound(&self, bound: &Bound) -> Markup {
         let ((left, y), (right, bottom)) =
             (self.place((self.x.0, bound.level)), self.place((bound.upto.min(self.x.1), self.y.0)));
-        let drop = if bound.upto < self.x.1 { format!("V{bottom}") } else { String::new() };
+        // A label below a level that ends, above one that does not: two near each other stay readable.
+        let ends = bound.upto < self.x.1;
+        let (drop, beside) = if ends { (format!("V{bottom}"), 14.0) } else { (String::new(), -5.0) };
         html! {
             path.bound d=(format!("M{left} {y}H{right}{drop}")) {}
-            text.bound x=(left + 6.0) y=(y - 5.0) { (short(&bound.label, LABEL)) }
+            text.bound x=(left + 6.0) y=(tenth(y + beside)) { (short(&bound.label, LABEL)) }
         }
     }
 
