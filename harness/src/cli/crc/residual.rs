@@ -10,8 +10,8 @@ use fsct_residual::{CRC_16, CRC_32, Code, Hump, MOST_OCTETS, Properness, Unsuita
 use std::path::PathBuf;
 use std::str::FromStr;
 
-/// SPDUs and parameter blocks with their signatures, and the neighbours that figures and limits of Annex D name. The 81 octets of
-/// FSP_ParamDescCRC in iec2022 would make the enumeration half as long again.
+/// SPDUs and parameter blocks with their signatures, and the neighbours that figures and limits of Annex D name. Not the 81
+/// octets of FSP_ParamDescCRC in iec2022, which would make every word of the enumeration three times as long.
 const LENGTHS_16: &str = "3..8,11..13,16..18,79";
 const LENGTHS_32: &str = "5..32";
 
