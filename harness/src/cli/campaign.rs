@@ -226,7 +226,7 @@ fn visible_lines(text: &str) -> String {
 }
 
 /// One line on a terminal: how much is done, how long it took and will take. Nothing elsewhere.
-fn progress(length: u64) -> indicatif::ProgressBar {
+pub(super) fn progress(length: u64) -> indicatif::ProgressBar {
     if !std::io::stderr().is_terminal() {
         return indicatif::ProgressBar::hidden();
     }

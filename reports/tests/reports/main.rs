@@ -6,5 +6,6 @@ mod coverage;
 mod decode;
 mod journal;
 mod measured;
+mod plot;
 mod rendered;
 mod summary;
