@@ -299,6 +299,13 @@ impl Device {
         matches!(self.state.0, 24 | 26)
     }
 
+    /// The same without the inputs of the last step: two machines that go on alike are then equal.
+    #[must_use]
+    pub fn settled(self) -> Device {
+        let inputs = [Var::TimerRestarted, Var::SdsetDs, Var::SetSdRx, Var::ChFAckReqDc, Var::CommErr];
+        Device { vars: self.vars.without(&inputs), ..self }
+    }
+
     fn run(&mut self, triggers: &[Trigger]) -> Path {
         super::run(&ROWS, &mut self.state, &mut self.vars, triggers)
     }
