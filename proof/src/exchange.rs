@@ -146,6 +146,8 @@ impl World {
     fn off(&self) -> Device {
         Device::new(Readings {
             last_valid: self.model.reads(Reading::LastValid),
+            previous_valid: self.model.reads(Reading::PreviousValid),
+            mirror_valid: self.model.reads(Reading::MirrorValid),
             sequential: self.model.reads(Reading::Sequential),
             ..Readings::default()
         })

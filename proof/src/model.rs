@@ -46,6 +46,10 @@ pub enum Reading {
     ExpectedOrNotOld,
     /// A06: T6 takes the expected counter alone.
     Expected,
+    /// A08: "previous SPDU" is the last valid one.
+    PreviousValid,
+    /// A16: DCount_i is that of the last valid SPDU.
+    MirrorValid,
     /// A08 and A16: "previous SPDU" and DCount_i are those of the last valid SPDU.
     LastValid,
     /// A09: T24 and T27 take the next counter alone.
@@ -68,11 +72,13 @@ pub enum Reading {
 
 impl Reading {
     /// Every reading there is.
-    pub const ALL: [Reading; 13] = [
+    pub const ALL: [Reading; 15] = [
         Reading::ZeroJudged,
         Reading::NotOld,
         Reading::ExpectedOrNotOld,
         Reading::Expected,
+        Reading::PreviousValid,
+        Reading::MirrorValid,
         Reading::LastValid,
         Reading::ExactlyNext,
         Reading::NextOrZero,
@@ -91,6 +97,8 @@ impl Reading {
             Reading::NotOld => "A06=T10-not-old",
             Reading::ExpectedOrNotOld => "A06=T10-expected-or-not-old",
             Reading::Expected => "A06=T6-expected",
+            Reading::PreviousValid => "A08=last-valid",
+            Reading::MirrorValid => "A16=last-valid",
             Reading::LastValid => "A08+A16=last-valid",
             Reading::ExactlyNext => "A09=exactly-next",
             Reading::NextOrZero => "A09=next-or-0",
@@ -105,10 +113,16 @@ impl Reading {
 
     /// Whether two readings answer the same question.
     fn excludes(self, other: Reading) -> bool {
-        use Reading::{ExactlyNext, ExpectedOrNotOld, NextOrZero, NotOld, ReceptionFirst, TimerFirst};
-        [[NotOld, ExpectedOrNotOld], [ExactlyNext, NextOrZero], [TimerFirst, ReceptionFirst]]
-            .iter()
-            .any(|pair| self != other && pair.contains(&self) && pair.contains(&other))
+        use Reading::{ExactlyNext, ExpectedOrNotOld, LastValid, MirrorValid, NextOrZero, NotOld};
+        use Reading::{PreviousValid, ReceptionFirst, TimerFirst};
+        let pairs = [
+            [NotOld, ExpectedOrNotOld],
+            [LastValid, PreviousValid],
+            [LastValid, MirrorValid],
+            [ExactlyNext, NextOrZero],
+            [TimerFirst, ReceptionFirst],
+        ];
+        pairs.iter().any(|pair| self != other && pair.contains(&self) && pair.contains(&other))
     }
 }
 

@@ -40,6 +40,8 @@ const OLD: Edition = Edition::V1_1;
 #[case::a06_t10_not_old(NEW, &[Reading::NotOld], 76_213, None, true, [None, None])]
 #[case::a06_t10_either(NEW, &[Reading::ExpectedOrNotOld], 76_213, None, true, [None, Some(8)])]
 #[case::a06_t6_expected(NEW, &[Reading::Expected], 16_389, None, true, [Some(12), Some(8)])]
+#[case::a08(NEW, &[Reading::PreviousValid], 38_118, None, true, [None, None])]
+#[case::a16(NEW, &[Reading::MirrorValid], 39_333, None, true, [None, None])]
 #[case::a08_a16(NEW, &[Reading::LastValid], 12_759, None, true, [Some(17), Some(12)])]
 #[case::a09_exactly_next(NEW, &[Reading::ExactlyNext], 12_689, None, true, [None, None])]
 #[case::a09_next_or_0(NEW, &[Reading::NextOrZero], 14_137, None, true, [Some(16), Some(12)])]
