@@ -3,12 +3,13 @@
 //! The machines are those of `fsct_protocol::scl`; what stands here is the channel, the power, the operator and the timers.
 
 use crate::model::{Model, Reading, Timing};
+use crate::search::Spread;
 use fsct_protocol::scl::device::{Readings, Received};
 use fsct_protocol::scl::master::Answer;
 use fsct_protocol::scl::{Device, Master, Path, State, Var};
 use fsct_protocol::spdu::{Control, Status, inv3, succ};
 use std::collections::HashMap;
-use std::hash::Hash;
+use std::hash::{BuildHasherDefault, Hash};
 use std::rc::Rc;
 
 /// What an exchange does to an image.
@@ -102,7 +103,7 @@ impl<M: Copy + Eq + Hash> Met<M> {
     }
 }
 
-type Memo<K> = HashMap<K, Rc<[Leg]>>;
+type Memo<K> = HashMap<K, Rc<[Leg]>, BuildHasherDefault<Spread>>;
 
 /// The composition: knows what may happen in an exchange.
 pub struct World {
@@ -120,8 +121,8 @@ impl World {
             model: model.clone(),
             masters: Met::new(),
             devices: Met::new(),
-            master_legs: HashMap::new(),
-            device_legs: HashMap::new(),
+            master_legs: HashMap::default(),
+            device_legs: HashMap::default(),
         }
     }
 

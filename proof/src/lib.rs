@@ -62,26 +62,30 @@ pub struct Outcome {
 /// As [`Model::check`].
 pub fn prove(model: &Model, property: &'static Property) -> Result<Outcome, String> {
     model.check()?;
-    let mut world = World::new(model);
+    Ok(asked(&mut World::new(model), property))
+}
+
+/// A world that other properties have been asked of already knows more of its exchanges; the answer is the same.
+fn asked(world: &mut World, property: &'static Property) -> Outcome {
     let (found, for_ever) = match property.watch {
-        Some(_) => (search::search(&mut world, Some(property)), None),
+        Some(_) => (search::search(world, Some(property)), None),
         None => {
-            let recovery = recovery::recovery(&mut world);
+            let recovery = recovery::recovery(world);
             (recovery.found, recovery.for_ever)
         }
     };
     let verdict = match (found.end, for_ever) {
         (End::Complete, _) => Verdict::Holds,
         (End::TooMany, _) => Verdict::Unknown,
-        (End::Beyond(steps), Some(repeats)) => Verdict::LockUp(chart::lines(&mut world, &steps), repeats),
+        (End::Beyond(steps), Some(repeats)) => Verdict::LockUp(chart::lines(world, &steps), repeats),
         (End::Beyond(steps), None) => {
-            let lines = chart::lines(&mut world, &steps);
+            let lines = chart::lines(world, &steps);
             if property.tables.is_some() { Verdict::Tables(lines) } else { Verdict::Violated(lines) }
         }
     };
-    let bound = property.watch.map(|_| (property.bound)(model));
+    let bound = property.watch.map(|_| (property.bound)(world.model()));
     let (states, steps, depth, octets) = (found.states, found.steps, found.depth, found.octets);
-    Ok(Outcome { property, verdict, worst: found.worst, bound, states, steps, depth, octets })
+    Outcome { property, verdict, worst: found.worst, bound, states, steps, depth, octets }
 }
 
 /// How many states there are: everything reachable, whatever is asked.
@@ -98,15 +102,17 @@ pub fn reachable(model: &Model) -> Result<usize, String> {
 /// # Errors
 /// As [`Model::check`].
 pub fn prove_all(model: &Model, properties: &[&'static Property]) -> Result<Vec<(Outcome, Duration)>, String> {
+    model.check()?;
     let cores = std::thread::available_parallelism().map_or(1, usize::from).min(properties.len());
     // The last of the list have the most states: they come first, so that no core waits for one of them alone.
     let next = Mutex::new(properties.iter().enumerate().rev());
     let work = || {
+        let mut world = World::new(model);
         let mut done = Vec::new();
         loop {
             let Some((at, property)) = next.lock().ok().and_then(|mut next| next.next()) else { return done };
             let started = Instant::now();
-            done.push((at, prove(model, property).map(|outcome| (outcome, started.elapsed()))));
+            done.push((at, (asked(&mut world, property), started.elapsed())));
         }
     };
     let mut done: Vec<_> = std::thread::scope(|scope| {
@@ -117,5 +123,5 @@ pub fn prove_all(model: &Model, properties: &[&'static Property]) -> Result<Vec<
     if done.len() != properties.len() {
         return Err("a search has failed".to_owned());
     }
-    done.into_iter().map(|(_, outcome)| outcome).collect()
+    Ok(done.into_iter().map(|(_, outcome)| outcome).collect())
 }

@@ -158,13 +158,15 @@ pub struct Model {
     pub faults: Option<u8>,
     /// The FS-Device may lose its power at any time for any time.
     pub power_cycles: bool,
-    /// Most states kept in one search, so that memory is bounded: a state takes some 100 octets.
+    /// Most states kept in one search, so that memory is bounded: a state takes some 60 octets.
     pub most_states: usize,
 }
 
 impl Model {
     /// Watchdogs that can be explored, in exchanges.
     pub const WATCHDOGS: core::ops::RangeInclusive<u8> = 2..=15;
+    /// States kept at most unless told otherwise: some 300 MB.
+    pub const MOST_STATES: usize = 5_000_000;
     /// Numbers of disturbed exchanges that can be counted.
     pub const FAULTS: core::ops::RangeInclusive<u8> = 0..=14;
 
@@ -177,7 +179,7 @@ impl Model {
             timing: Timing::Pipelined,
             faults: None,
             power_cycles: true,
-            most_states: 20_000_000,
+            most_states: Model::MOST_STATES,
         }
     }
 

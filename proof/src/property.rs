@@ -3,7 +3,7 @@
 //! A property watches the exchanges. Where the machines alone do not tell, it keeps a monitor: a small number that is part of the
 //! explored state. It measures something in each exchange; it holds while the measure stays within its bound.
 
-use crate::exchange::{Joint, Step};
+use crate::exchange::{Around, Joint, Step};
 use crate::model::{Model, Timing};
 use fsct_protocol::scl::{Device, Master, Path, State, Var};
 
@@ -133,6 +133,13 @@ pub struct Property {
     pub tables: Option<&'static str>,
     /// How it watches; recovery (P5) does not watch, it looks ahead.
     pub watch: Option<Watch>,
+}
+
+impl Property {
+    /// What surrounds the machines with this monitor: a demand that P8 waits on is held.
+    pub(crate) fn around(&self, monitor: u16) -> Around {
+        if self.name == "P8" && monitor != 0 { Around::Demand } else { Around::Free }
+    }
 }
 
 /// Every property, in order.

@@ -31,7 +31,7 @@ impl Key {
 
 /// Keys are made by us, so a multiplication spreads them well enough, and the same on every machine.
 #[derive(Default)]
-struct Spread(u64);
+pub(crate) struct Spread(u64);
 
 impl Hasher for Spread {
     fn finish(&self) -> u64 {
@@ -126,13 +126,6 @@ impl States {
     }
 }
 
-fn around(property: Option<&Property>, monitor: u16) -> Around {
-    match property {
-        Some(property) if property.name == "P8" && monitor != 0 => Around::Demand,
-        _ => Around::Free,
-    }
-}
-
 fn watch(world: &World, property: Option<&Property>, from: Joint, step: &Step, monitor: u16) -> Watched {
     let seen = Seen {
         model: world.model(),
@@ -158,7 +151,7 @@ fn behind(world: &World, property: Option<&Property>, key: Key, step: &Step) -> 
 
 fn steps_on(world: &mut World, property: Option<&Property>, key: Key) -> Vec<Step> {
     let (from, _, monitor) = key.open();
-    world.steps(from, around(property, monitor))
+    world.steps(from, property.map_or(Around::Free, |property| property.around(monitor)))
 }
 
 /// Explores a world, watched by a property.

@@ -42,8 +42,8 @@ pub struct Args {
     /// The default and then every reading by itself; some of them are violated
     #[arg(long, conflicts_with = "readings")]
     all: bool,
-    /// Most states kept for one property; a state takes some 100 octets
-    #[arg(long, default_value_t = 20_000_000, value_name = "N")]
+    /// Most states kept for one property; a state takes some 60 octets
+    #[arg(long, default_value_t = Model::MOST_STATES, value_name = "N")]
     most_states: usize,
     /// One JSON document
     #[arg(long)]
