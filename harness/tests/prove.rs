@@ -44,7 +44,7 @@ fn a_search_that_had_to_stop_proves_nothing() {
 #[rstest]
 #[case::watchdog(&["--watchdog", "1"], "a watchdog of 1 exchanges; 2 to 15 can be explored")]
 #[case::faults(&["--faults", "15"], "more than 14 disturbed exchanges are not counted")]
-#[case::no_number(&["--faults", "many"], "a number or `unlimited` is expected")]
+#[case::no_number(&["--faults", "many"], "a number from 0 to 14 or `unlimited` is expected")]
 #[case::timing(&["--timing", "X"], "`X` is no timing; P (pipelined) and I (immediate answers) are")]
 #[case::reading(&["--reading", "A99"], "`A99` is no reading; these are: A05=judged")]
 #[case::property(&["--property", "P99"], "`P99` is no property; these are: P1-taken")]

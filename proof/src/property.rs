@@ -146,7 +146,7 @@ impl Property {
 pub static PROPERTIES: [Property; 14] = [
     Property {
         name: "P1-taken",
-        about: "an SPDU that is taken is younger than one watchdog",
+        about: "process data put to use comes from an SPDU younger than one watchdog",
         clause: "11.5.5, Table 27 (unacceptable delay)",
         measures: "exchanges since it was built",
         bound: |model| model.watchdog - u8::from(model.timing == Timing::Pipelined),

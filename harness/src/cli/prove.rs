@@ -61,7 +61,7 @@ impl std::str::FromStr for Faults {
         match (text, text.parse()) {
             ("unlimited", _) => Ok(Faults(None)),
             (_, Ok(count)) => Ok(Faults(Some(count))),
-            _ => Err("a number or `unlimited` is expected".to_owned()),
+            _ => Err("a number from 0 to 14 or `unlimited` is expected".to_owned()),
         }
     }
 }
