@@ -74,6 +74,7 @@ fn readings() -> impl Strategy<Value = Readings> {
         last_valid,
         jump_ignored,
         sequential,
+        ..Readings::default()
     })
 }
 

@@ -13,6 +13,7 @@ mod gauntlet;
 mod host;
 mod iodd;
 mod list;
+mod prove;
 mod report;
 mod run;
 mod simulate;
@@ -72,6 +73,8 @@ enum Command {
     Report(report::Args),
     /// Run every mutant of the reference DUTs against the suites: the kill matrix
     Gauntlet(gauntlet::Args),
+    /// Explore both machines of the SCL, as the tables have them, with a black channel that does its worst
+    Prove(prove::Args),
     /// Prove the known answers for the CRC signatures
     Vectors(vectors::Args),
     /// Compute the signature of octets
@@ -103,6 +106,7 @@ pub fn main() -> ExitCode {
         Command::Simulate(args) => simulate::run(&args),
         Command::Report(args) => report::run(&args),
         Command::Gauntlet(args) => gauntlet::run(&args),
+        Command::Prove(args) => prove::run(&args),
         Command::Vectors(args) => vectors::run(&args),
         Command::Crc(args) => crc::run(&args),
         Command::Tours(args) => tours::run(&args),

@@ -152,6 +152,10 @@ pub struct Received {
 pub struct Readings {
     /// A08 and A16: "previous SPDU" and DCount_i are those of the last valid SPDU, not of the last processed one.
     pub last_valid: bool,
+    /// A08 alone: "previous SPDU" is the last valid one. With it operation may never return, so no product may follow it.
+    pub previous_valid: bool,
+    /// A16 alone: DCount_i is that of the last valid SPDU. With it operation may never return, so no product may follow it.
+    pub mirror_valid: bool,
     /// A09: a counter that is neither 0 nor the next one is ignored instead of being a CommErr.
     pub jump_ignored: bool,
     /// A19: T29 works off CommErrCount and TimeoutCount in the error cycle too.
@@ -229,8 +233,11 @@ impl Device {
             return Path::default();
         }
         let mcount = received.control.mcount;
-        if valid || !self.readings.last_valid {
+        let Readings { last_valid, previous_valid, mirror_valid, .. } = self.readings;
+        if valid || !(last_valid || previous_valid) {
             self.previous = Some(mcount);
+        }
+        if valid || !(last_valid || mirror_valid) {
             self.vars.set(Var::McountInv, inv3(mcount));
         }
         self.vars.set(Var::CommErr, (!valid).into());
@@ -297,6 +304,13 @@ impl Device {
     /// Whether DTimer runs: in states 24 and 26.
     pub const fn timer_runs(&self) -> bool {
         matches!(self.state.0, 24 | 26)
+    }
+
+    /// The same without the inputs of the last step: two machines that go on alike are then equal.
+    #[must_use]
+    pub fn settled(self) -> Device {
+        let inputs = [Var::TimerRestarted, Var::SdsetDs, Var::SetSdRx, Var::ChFAckReqDc, Var::CommErr];
+        Device { vars: self.vars.without(&inputs), ..self }
     }
 
     fn run(&mut self, triggers: &[Trigger]) -> Path {

@@ -210,6 +210,20 @@ impl Master {
         matches!(self.state.0, 5 | 7)
     }
 
+    /// DCount_i of the answer processed last; `None` before the first.
+    pub const fn previous(&self) -> Option<u8> {
+        self.previous
+    }
+
+    /// The same without the inputs of the last step: two machines that go on alike are then equal. State 7 looks at the expected
+    /// counter alone, so it forgets the previous one unless that is `kept` for another reading of T10 (A06).
+    #[must_use]
+    pub fn settled(self, kept: bool) -> Master {
+        let inputs = [Var::TimerRestarted, Var::ChFAckC, Var::SetSdC, Var::SdsetRx, Var::Faults];
+        let previous = self.previous.filter(|_| kept || self.state != State(7));
+        Master { vars: self.vars.without(&inputs), previous, ..self }
+    }
+
     fn run(&mut self, triggers: &[Trigger]) -> Path {
         super::run(&ROWS, &mut self.state, &mut self.vars, triggers)
     }

@@ -133,6 +133,12 @@ impl Vars {
     pub const fn set(&mut self, var: Var, value: u8) {
         self.0[var as usize] = value;
     }
+
+    /// The same with these variables 0.
+    fn without(mut self, vars: &[Var]) -> Vars {
+        vars.iter().for_each(|var| self.set(*var, 0));
+        self
+    }
 }
 
 /// A condition of a guard or of an action.
