@@ -2,7 +2,7 @@
 
 use fsct_proof::{Around, Fate, Joint, Leg, Model, PROPERTIES, Seen, Step, Watched, World, image};
 use fsct_protocol::Edition;
-use fsct_protocol::scl::device::Received;
+use fsct_protocol::scl::device::{Readings, Received};
 use fsct_protocol::scl::master::Answer;
 use fsct_protocol::scl::{Device, Master, Path, State, Var};
 use fsct_protocol::spdu::{Control, Status};
@@ -53,11 +53,43 @@ fn an_early_restart_is_seen() {
     assert_eq!(watched("P2d", 0, NOWHERE, live_master(), tripped_device()).monitor, 1);
 }
 
+/// Behind a fault, a good answer with ChFAck_C at this level, and another at 1.
+fn acknowledging_master(pressed: bool) -> [(Master, Path); 2] {
+    let good = |dcount_i| Answer { status: Status { dcount_i, ..Status::default() }, intact: true };
+    let mut master = Master::after_fault(0);
+    master.set_ch_f_ack_c(pressed);
+    let first = master.receive(good(7));
+    let requesting = master;
+    master.set_ch_f_ack_c(true);
+    let second = master.receive(good(6));
+    [(requesting, first), (master, second)]
+}
+
+#[test]
+fn an_acknowledgment_is_0_and_then_1() {
+    let safe = || (tripped_device().0, Path::default());
+    for name in ["P2", "P2d"] {
+        let [released, acknowledged] = acknowledging_master(false);
+        assert_eq!(watched(name, 1, NOWHERE, released, safe()).monitor, 2, "{name}");
+        assert_eq!(watched(name, 2, NOWHERE, acknowledged, safe()).monitor, 0, "{name}");
+        assert_eq!(watched(name, 1, NOWHERE, acknowledged, safe()).monitor, 1, "{name}");
+        let [held, still] = acknowledging_master(true);
+        assert_eq!(watched(name, 1, NOWHERE, held, safe()).monitor, 1, "{name}");
+        assert_eq!(watched(name, 1, NOWHERE, still, safe()).monitor, 1, "{name}");
+    }
+}
+
 #[test]
 fn sd_cycles_left_out_are_seen() {
     assert_eq!(watched("P3", 0, NOWHERE, live_master(), live_device()).measure, 3);
     assert_eq!(watched("P3", 3, NOWHERE, live_master(), live_device()).measure, 0);
     assert_eq!(watched("P3", 3, NOWHERE, live_master(), tripped_device()).monitor, 0);
+    let mut device = Device::new(Readings::default());
+    device.start();
+    let path = device.receive(Received { control: Control::default(), intact: true });
+    assert_eq!(watched("P3", 0, NOWHERE, waiting_master(), (device, path)).monitor, 1);
+    // An answer that stands counts once.
+    assert_eq!(watched("P3", 1, NOWHERE, waiting_master(), (device, Path::default())).monitor, 1);
 }
 
 #[test]
@@ -66,6 +98,11 @@ fn a_reaction_that_does_not_come_is_seen() {
     let second = watched("P4", first.monitor, NOWHERE, live_master(), (tripped_device().0, Path::default()));
     assert_eq!((first.measure, second.measure), (1, 2));
     assert_eq!(watched("P4", second.monitor, NOWHERE, waiting_master(), tripped_device()).monitor, 0);
+    let mut timed_out = Master::regular(3);
+    let path = timed_out.expire();
+    let first = watched("P4", 0, NOWHERE, (timed_out, path), live_device());
+    let second = watched("P4", first.monitor, NOWHERE, waiting_master(), live_device());
+    assert_eq!((first.measure, second.measure), (1, 2));
 }
 
 #[test]

@@ -300,3 +300,38 @@ fn the_row_that_decides_an_answer_is_not_the_one_that_sends_it() {
     assert_eq!(Master::regular(3).receive(answer(4)).deciding(), Some(T(4)));
     assert_eq!((Path::default().deciding(), State(24).to_string()), (None, "24".into()));
 }
+
+#[test]
+fn settled_machines_differ_only_in_what_matters_later() {
+    let (mut pressed, free) = (Master::regular(3), Master::regular(3));
+    pressed.set_ch_f_ack_c(true);
+    pressed.set_set_sd_c(true);
+    assert_ne!(pressed, free);
+    assert_eq!(pressed.settled(false), free.settled(false));
+    assert_eq!(pressed.settled(false).previous(), Some(5));
+    pressed.expire();
+    assert_eq!((pressed.settled(false).previous(), pressed.settled(true).previous()), (None, Some(5)));
+    let (mut asked, device) = (Device::regular(3), Device::regular(3));
+    asked.set_sdset_ds(true);
+    assert_ne!(asked, device);
+    assert_eq!(asked.settled(), device.settled());
+}
+
+/// 2 arrives as 5 with a bad signature, then as it was sent: which counter the answer mirrors, and whether the second is a jump.
+#[rstest]
+#[case::processed(Readings::default(), 2, true)]
+#[case::previous_valid(Readings { previous_valid: true, ..Readings::default() }, 2, false)]
+#[case::mirror_valid(Readings { mirror_valid: true, ..Readings::default() }, 6, true)]
+#[case::last_valid(Readings { last_valid: true, ..Readings::default() }, 6, false)]
+fn what_a_wrong_spdu_leaves_behind(#[case] readings: Readings, #[case] dcount_i: u8, #[case] jump: bool) {
+    let mut scl = Device::new(readings);
+    scl.start();
+    let spdu = |mcount, intact| Received { control: Control { mcount, set_sd: false, ch_f_ack_req: false }, intact };
+    for mcount in [0, 1] {
+        scl.receive(spdu(mcount, true));
+    }
+    scl.receive(spdu(5, false));
+    assert_eq!(scl.status().dcount_i, dcount_i);
+    scl.receive(spdu(2, true));
+    assert_eq!(scl.get(Var::CommErr) == 1, jump);
+}
