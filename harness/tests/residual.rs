@@ -41,7 +41,9 @@ fn probabilities_have_twelve_digits(#[case] mode: &str, #[case] octets: &str, #[
             let (p, found) = (told[0].as_f64().expect("p"), told[1].as_f64().expect("Rp"));
             let begins = |line: &&str| {
                 let cells: Vec<&str> = line.split(',').collect();
-                cells[0] == mode && cells[1] == length["octets"].to_string() && cells[2].parse() == Ok(p)
+                cells[0] == mode
+                    && cells[1].parse() == Ok(length["octets"].as_u64().expect("a number"))
+                    && cells[2].parse() == Ok(p)
             };
             let line = PROBABILITIES.lines().find(begins).unwrap_or_else(|| panic!("{} at {p}", length["octets"]));
             let exact: f64 = line.rsplit(',').next().and_then(|cell| cell.parse().ok()).expect("Rp");
