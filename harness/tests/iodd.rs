@@ -100,7 +100,7 @@ fn the_reference_device_is_what_its_iodd_declares() {
 
 #[rstest]
 #[case::param_desc_crc("upperValue=\"65535\"", "upperValue=\"60000\"", "FSD-2201")]
-#[case::structure("defaultValue=\"14385\"", "defaultValue=\"1234\"", "FSD-2202")]
+#[case::structure("defaultValue=\"21088\"", "defaultValue=\"1234\"", "FSD-2202")]
 #[case::time_to_ready(
     "index=\"16912\" accessRights=\"ro\" defaultValue=\"50\"",
     "index=\"16912\" accessRights=\"ro\" defaultValue=\"51\"",

@@ -220,15 +220,16 @@ fn null_modem() -> [(TTYPort, String); 2] {
 }
 
 #[rstest]
-#[case::device("device", fsct_c::DEVICE)]
-#[case::master("master", fsct_c::MASTER)]
-fn a_stack_in_c_at_the_other_end_of_a_line(#[case] role: &str, #[case] sources: &[&str]) {
+#[case::device("device", fsct_c::DEVICE, "reference-device")]
+#[case::master("master", fsct_c::MASTER, "master-without-storage")]
+fn a_stack_in_c_at_the_other_end_of_a_line(#[case] role: &str, #[case] sources: &[&str], #[case] profile: &str) {
     let sources = [fsct_c::CLIENT, sources].concat();
     let Some(program) = fsct_c::build(fsct_c::Kind::Program, &sources, &["-DFSCT_CLIENT_PAYLOAD=2048"]) else { return };
     let [(_board, board), (_port, port)] = null_modem();
     let mut child = Command::new(program).arg(board).spawn().expect("it starts");
     let folder = Folder::new(&format!("serial-c-{role}"));
-    let run = fsct(&["run", "--dut", &format!("serial:{port}"), "--out", &folder.out()]).output().expect("it runs");
+    let url = format!("serial:{port}");
+    let run = fsct(&["run", "--dut", &url, "--profile", profile, "--out", &folder.out()]).output().expect("it runs");
     let _ = child.kill();
     let _ = child.wait();
     assert_eq!(run.status.code(), Some(0), "{run:?}");

@@ -197,6 +197,7 @@ fn life(variant: Variant, options: Options) -> Vec<Observation> {
     life.timers();
     life.lines();
     life.requests();
+    life.technology();
     life.seen
 }
 
@@ -305,6 +306,18 @@ impl Life {
         self.write(0x4202, &falsified);
         self.out(m(0));
         self.power_cycle();
+    }
+
+    /// A technology parameter that FSP_TechParCRC was not made for: read back, verified, and in OSSDe operation.
+    fn technology(&mut self) {
+        self.bench.commission(1);
+        self.write(0x0040, &[0, 0, 0, 7]);
+        self.apply(Stimulus::Read { index: 0x0040, subindex: 0 });
+        self.power_cycle();
+        let right = self.bench.record();
+        self.write(0x4202, &right);
+        self.power_cycle();
+        (0..140).for_each(|_| self.advance(50 * MS));
     }
 
     fn read_all(&mut self) {

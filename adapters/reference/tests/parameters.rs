@@ -10,7 +10,8 @@ use fsct_protocol::{Edition, ProtMode};
 use fsct_reference::parameters::{error_type as refused, io_struct_crc};
 use rstest::rstest;
 
-const ARMED: u32 = 0x34FA_2C43;
+/// The signature over the technology parameter of the factory.
+const ARMED: u32 = 1;
 
 fn commissioned(variant: fsct_adapters::Variant, tech_par_crc: u32) -> Bench {
     let mut bench = Bench::factory(variant);
@@ -42,7 +43,7 @@ fn factory_setting() {
 #[case(INDEX_PROTOCOL, 1, Ok("01"))]
 #[case(INDEX_PROTOCOL, 2, Ok("02"))]
 #[case(INDEX_PROTOCOL, 3, Ok("0064"))]
-#[case(INDEX_PROTOCOL, 5, Ok("34FA2C43"))]
+#[case(INDEX_PROTOCOL, 5, Ok("00000001"))]
 #[case(INDEX_PROTOCOL, 7, Err(refused::SUBINDEX_NOT_AVAILABLE))]
 #[case(INDEX_VERIFY, 0, Err(refused::ACCESS_DENIED))]
 #[case(0x4203, 0, Err(refused::INDEX_NOT_AVAILABLE))]

@@ -10,7 +10,8 @@ use fsct_protocol::{Edition, ProtMode};
 use fsct_reference::parameters::error_type as refused;
 use rstest::rstest;
 
-const ARMED: u32 = 0x34FA_2C43;
+/// The signature over the technology parameter of the factory.
+const ARMED: u32 = 1;
 const SYSTEM_COMMAND: u16 = 0x0002;
 const STORAGE: u16 = 0x0003;
 
@@ -91,8 +92,8 @@ fn an_armed_device_is_uploaded() {
     bench.commission(ARMED);
     command(&mut bench, 0x01).unwrap();
     assert_eq!(bench.read(STORAGE, 2), Ok(vec![0b010]));
-    assert_eq!(bench.read(STORAGE, 5), Ok(vec![0x42, 0x00, 0, 0x42, 0x01, 0, 0, 0]));
-    assert_eq!(bench.read(STORAGE, 3), Ok(vec![0, 0, 0, 31]));
+    assert_eq!(bench.read(STORAGE, 5), Ok(vec![0x42, 0x00, 0, 0x42, 0x01, 0, 0x00, 0x40, 0, 0, 0]));
+    assert_eq!(bench.read(STORAGE, 3), Ok(vec![0, 0, 0, 39]));
     let checksum = bench.read(STORAGE, 4).unwrap();
     command(&mut bench, 0x02).unwrap();
     bench.commission(ARMED + 1);
