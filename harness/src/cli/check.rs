@@ -2,8 +2,9 @@
 
 use super::{Cases, print, show};
 use crate::ledger::Class;
-use crate::library::EVERYTHING;
+use crate::library::{EVERYTHING, Library};
 use fsct_adapters::Role;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Arguments of `fsct check`.
@@ -51,6 +52,9 @@ pub fn run(args: &Args) -> u8 {
         })
         .collect();
     print(format!("{records} requirements: {}", classes.join(", ")));
+    for file in open(&library) {
+        print(file);
+    }
     let judged = |id: &str, role| {
         library.cases().any(|case| case.role == role && case.requirements.iter().any(|requirement| requirement == id))
     };
@@ -63,4 +67,14 @@ pub fn run(args: &Args) -> u8 {
         only(Role::Master, Role::Device)
     ));
     0
+}
+
+/// What nothing is done about yet, one line a file of the ledger.
+fn open(library: &Library) -> Vec<String> {
+    let mut files: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for record in library.ledger.iter().filter(|record| record.class == Class::Open) {
+        let file = record.place.rsplit_once(':').map_or(record.place.as_str(), |(file, _)| file);
+        files.entry(file).or_default().push(&record.id);
+    }
+    files.into_iter().map(|(file, ids)| format!("open in {file}: {}", ids.join(" "))).collect()
 }
