@@ -11,7 +11,13 @@ use fsct_protocol::Edition;
 use fsct_protocol::fsp::{Authenticity, INDEX_AUTHENTICITY, INDEX_PROTOCOL, INDEX_VERIFY, Protocol};
 
 /// Index of Data Storage.
-const INDEX_DATA_STORAGE: u16 = 0x0003;
+pub const INDEX_DATA_STORAGE: u16 = 0x0003;
+/// DS_Command: start and end of an upload.
+pub const UPLOAD: [u8; 2] = [1, 2];
+/// DS_Command: start and end of a download.
+pub const DOWNLOAD: [u8; 2] = [3, 4];
+/// DS_Command: what is under way ends without effect.
+pub const BREAK: u8 = 5;
 /// Index of the technology parameter: the first one free for the maker.
 const INDEX_TECHNOLOGY: u16 = 0x0040;
 /// What Data Storage is about, in the order of the Index_List.
@@ -144,15 +150,15 @@ impl Memory {
             return Response::Refused(APPLICATION_ERROR);
         }
         match data {
-            [1] => {
+            [code] if *code == UPLOAD[0] => {
                 self.state = State::Upload;
                 self.remember(Asked::UploadStart);
             }
-            [2] => {
+            [code] if *code == UPLOAD[1] => {
                 (self.state, self.flag) = (State::Inactive, false);
                 self.remember(Asked::UploadEnd);
             }
-            [3] => {
+            [code] if *code == DOWNLOAD[0] => {
                 let let_in = self.is_back_to_box();
                 self.remember(Asked::DownloadStart(let_in));
                 if !let_in && self.edition == Edition::Iec2022 {
@@ -160,11 +166,11 @@ impl Memory {
                 }
                 self.state = State::Download;
             }
-            [4] => {
+            [code] if *code == DOWNLOAD[1] => {
                 (self.state, self.flag) = (State::Inactive, false);
                 self.remember(Asked::DownloadEnd);
             }
-            [5] => self.state = State::Inactive,
+            [BREAK] => self.state = State::Inactive,
             _ => return Response::Refused(APPLICATION_ERROR),
         }
         Response::Written
@@ -223,7 +229,7 @@ impl Memory {
             Asked::Record => "verify record".to_owned(),
         };
         match self.asked.as_slice() {
-            [] => "no request of Data Storage".to_owned(),
+            [] | [Asked::Record] => "no request of Data Storage".to_owned(),
             asked => asked.iter().map(word).collect::<Vec<_>>().join(", "),
         }
     }

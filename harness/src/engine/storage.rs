@@ -4,15 +4,12 @@ use super::Engine;
 use crate::case::model::{Parameterize, Sent, Way};
 use crate::parameterize;
 use crate::session::{Reply, Stop};
+use crate::specimen::{BREAK, DOWNLOAD, INDEX_DATA_STORAGE as INDEX, UPLOAD};
 use fsct_adapters::Stimulus;
 
-/// Index of Data Storage, with the Subindices of DS_Command and Index_List.
-const INDEX: u16 = 0x0003;
+/// Subindices of DS_Command and Index_List.
 const COMMAND: u8 = 1;
 const LIST: u8 = 5;
-/// DS_Command: start and end of an upload and of a download.
-const UPLOAD: [u8; 2] = [1, 2];
-const DOWNLOAD: [u8; 2] = [3, 4];
 /// Records of a set at the most.
 const MOST: usize = 200;
 
@@ -31,26 +28,41 @@ impl Engine<'_, '_> {
         if !self.commanded(start)? {
             return Ok(());
         }
-        match way {
-            Way::Upload => {
-                let Some(list) = self.told(INDEX, LIST)? else { return Ok(()) };
-                let mut set = Vec::new();
-                for (index, subindex) in entries(&list).take(MOST) {
-                    let Some(value) = self.told(index, subindex)? else { return Ok(()) };
-                    set.push((index, subindex, value));
-                }
-                self.set = set;
-            }
-            Way::Download => {
-                for (index, subindex, data) in set {
-                    self.acyclic(Stimulus::Write { index, subindex, data })?;
-                    if self.session.reply != Some(Reply::Written) {
-                        return Ok(());
-                    }
-                }
+        let whole = match way {
+            Way::Upload => self.fetched()?,
+            Way::Download => self.put(set)?,
+        };
+        if whole {
+            return self.commanded(end).map(drop);
+        }
+        // As an FS-Master does: what is under way must not stand in the way of the next step.
+        let refusal = self.session.reply.clone();
+        self.commanded(BREAK)?;
+        self.session.reply = refusal;
+        Ok(())
+    }
+
+    /// Whether every record of the Index_List could be read; they are kept.
+    fn fetched(&mut self) -> Result<bool, Stop> {
+        let Some(list) = self.told(INDEX, LIST)? else { return Ok(false) };
+        let mut set = Vec::new();
+        for (index, subindex) in entries(&list).take(MOST) {
+            let Some(value) = self.told(index, subindex)? else { return Ok(false) };
+            set.push((index, subindex, value));
+        }
+        self.set = set;
+        Ok(true)
+    }
+
+    /// Whether every record of the set was taken.
+    fn put(&mut self, set: Vec<(u16, u8, Vec<u8>)>) -> Result<bool, Stop> {
+        for (index, subindex, data) in set {
+            self.acyclic(Stimulus::Write { index, subindex, data })?;
+            if self.session.reply != Some(Reply::Written) {
+                return Ok(false);
             }
         }
-        self.commanded(end).map(drop)
+        Ok(true)
     }
 
     /// The set that was copied last; where none was, which an FS-Device in use may refuse, the armed records of the profile.
