@@ -116,6 +116,9 @@ fn item(source: &Arc<Source>, node: &Node, problems: &mut Vec<Problem>) -> Optio
     if cases.is_empty() && figures.is_empty() && documents.is_empty() && gaps.is_empty() {
         fields.problem(node.at.clone(), "an item that nothing supports has to say so under `gaps`");
     }
+    if let Some((_, at)) = cases.iter().find(|(name, _)| name == NAME) {
+        fields.problem(at.clone(), format!("`{NAME}` is all of this and supports no item of it"));
+    }
     fields.finish(problems);
     let text = |placed: Placed| placed.0;
     Some(Item {
@@ -152,6 +155,12 @@ mod tests {
     fn an_item_without_support_names_its_gap() {
         let problems = parsed("- {clause: I.1, requirement: R-v11.I.1-01, asks: something}").expect_err("no gap");
         assert!(problems[0].to_string().contains("has to say so under `gaps`"), "{}", problems[0]);
+    }
+
+    #[test]
+    fn an_item_does_not_rest_on_all_items() {
+        let problems = parsed("- {clause: I.1, requirement: R-v11.I.1-01, asks: x, cases: [annex-i]}");
+        assert!(problems.expect_err("it is circular")[0].to_string().contains("supports no item"));
     }
 
     #[test]

@@ -382,9 +382,12 @@ pub fn needs(steps: &[Step]) -> impl Iterator<Item = Pco> + '_ {
         {
             Some(Pco::Acyclic)
         }
-        Action::Read { .. } | Action::Write { .. } | Action::DataStorage(_) | Action::Smi(_) | Action::Raise { .. } => {
-            Some(Pco::Acyclic)
-        }
+        Action::Read { .. }
+        | Action::Write { .. }
+        | Action::DataStorage(_)
+        | Action::Technology(_)
+        | Action::Smi(_)
+        | Action::Raise { .. } => Some(Pco::Acyclic),
         Action::Drive(_) | Action::Wake(_) | Action::Pass { after: Some(_), .. } => Some(Pco::Line),
         _ => None,
     })

@@ -157,6 +157,9 @@ impl Profile {
             fields.problem(root.at.clone(), "`FS_IO_in` and `FS_IO_out` are for an FS-Device");
         }
         let technology = Technology::read(&mut fields, &root.at);
+        if role == Some(Role::Master) && technology.is_some() {
+            fields.problem(root.at.clone(), "`FST_index`, `FST_value` and `FST_other` are for an FS-Device");
+        }
         features.extend(technology.iter().map(|_| technology::FEATURE.to_owned()));
         if role == Some(Role::Device) && no_fs_port_mode {
             fields.problem(root.at.clone(), "`FS_PortMode` is for an FS-Master");
