@@ -191,6 +191,58 @@ fn a_device_that_repeats_one_spdu_fails(#[values("random", "bits")] what: &str) 
     assert!(!told.contains("pass"), "{told}");
 }
 
+/// At p = 0.5 one SPDU of 65536 carries a right signature again; the exact value lies in the interval of what is seen.
+#[rstest]
+fn so_many_noisy_spdus_are_taken_as_the_exact_residual_error_says(
+    #[values("device", "master")] role: &str,
+    #[values("1", "3")] jobs: &str,
+) {
+    let dut = format!("inproc:reference-{role}");
+    let out = folder(&format!("noise-{role}-{jobs}"));
+    let args = ["noise", "--ber", "0.1,0.5", "--length", "7", "--spdus", "200000", "--dut", &dut, "--jobs", jobs];
+    let (code, told, errors) = campaign(&args, &out);
+    assert_eq!(code, 0, "{told}{errors}");
+    let report: serde_json::Value = serde_json::from_str(&file(&out, "campaign.json")).expect("JSON");
+    let rows = report["rows"].as_array().expect("rows");
+    assert_eq!(rows.len(), 2, "{report}");
+    let half = &rows[1];
+    assert!(half["undetected"].as_u64() > Some(0) && half["agrees"] == true, "{half}");
+    assert_eq!(half["exact"].as_f64().map(|exact| (exact * 65536.0).round()), Some(1.0), "{half}");
+    let other = folder(&format!("noise-{role}-{jobs}-again"));
+    let (_, again, _) = campaign(&args[..args.len() - 2], &other);
+    assert_eq!(told.lines().nth(2), again.lines().nth(2), "the same seed, the same noise");
+    assert!(file(&out, "noise.svg").contains("class=\"measured\""));
+}
+
+#[test]
+fn a_dut_that_takes_a_wrong_signature_is_not_excused_by_chance() {
+    let out = folder("noise-unchecked");
+    let dut = "inproc:reference-device?mutant=signature-unchecked-after-fault";
+    let (code, told, errors) =
+        campaign(&["noise", "--ber", "0.02", "--length", "5", "--spdus", "20000", "--dut", dut], &out);
+    assert_eq!(code, 1, "{told}{errors}");
+    assert!(told.contains("  clause   ") && told.contains("fail: a noisy SPDU"), "{told}");
+    assert!(file(&out, "campaign.json").contains("\"expected\""));
+}
+
+/// Where nothing was taken nothing was measured.
+#[test]
+fn without_an_undetected_spdu_nothing_is_said() {
+    let out = folder("noise-quiet");
+    let (code, told, errors) = campaign(&["noise", "--ber", "0.001", "--length", "4", "--spdus", "500"], &out);
+    assert_eq!(code, 5, "{told}{errors}");
+    assert!(!told.contains("pass"), "{told}");
+}
+
+#[rstest]
+#[case(&["--ber", "0.7"], "up to 0.5")]
+#[case(&["--length", "9"], "4..=7")]
+fn noise_that_cannot_be_is_refused(#[case] args: &[&str], #[case] why: &str) {
+    let (code, told, errors) = campaign(&[&["noise"], args].concat(), &folder("noise-refused"));
+    assert_eq!(code, 2, "{told}{errors}");
+    assert!(errors.contains(why), "{errors}");
+}
+
 #[rstest]
 #[case("inproc:reference-device", 0, "pass: 68080 falsified records, none starts the SCL")]
 #[case("inproc:reference-device?mutant=record-bit-unchecked", 1, "fail: at record 88")]

@@ -32,7 +32,7 @@ pub use asked::Asked;
 pub use compare::Differing;
 pub use coverage::{Coverage, Reached};
 pub use journal::{FILE, Journal, ReadError, Reader, Run, read};
-pub use plot::{Bound, Curve, Plot, plots};
+pub use plot::{Bound, Curve, Measured, Plot, plots};
 pub use story::{headline, story};
 pub use summary::{Summary, execution_name, verdict_name};
 pub use text::visible;

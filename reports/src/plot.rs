@@ -27,6 +27,7 @@ text { font: 12px ui-monospace, 'DejaVu Sans Mono', monospace; fill: var(--ink);
 .bound { fill: none; stroke: var(--bound); stroke-width: 1.6; stroke-dasharray: 7 4; } text.bound { stroke: none; fill: var(--bound); }
 .number { fill: var(--curve); paint-order: stroke; stroke: var(--paper); stroke-width: 4px; }
 .mark { fill: var(--mark); stroke: none; }
+.measured path { fill: none; stroke: var(--ink); } .measured circle { fill: var(--ink); }
 ";
 
 /// One drawing: curves with the bounds they are held against.
@@ -44,6 +45,8 @@ pub struct Plot {
     pub curves: Vec<Curve>,
     /// Dashed lines.
     pub bounds: Vec<Bound>,
+    /// What was measured.
+    pub measured: Vec<Measured>,
 }
 
 /// A curve.
@@ -57,6 +60,19 @@ pub struct Curve {
     pub points: Vec<(f64, f64)>,
     /// A place that deserves a dot.
     pub mark: Option<(f64, f64)>,
+}
+
+/// A measured value with the interval that holds the true one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// In full, shown when pointed at.
+    pub about: String,
+    /// Where on the horizontal axis.
+    pub at: f64,
+    /// The value; nothing is drawn of one outside the drawing but its interval.
+    pub value: f64,
+    /// The interval.
+    pub interval: (f64, f64),
 }
 
 /// A level that holds from the left end up to `upto`.
@@ -113,6 +129,7 @@ impl Plot {
             text.soft x=(left + 6.0) y=(top + 16.0) { (short(&self.axes.1, LABEL)) }
             @for curve in &self.curves { (self.curve(curve)) }
             @for bound in &self.bounds { (self.bound(bound)) }
+            @for measured in &self.measured { (self.measured(measured)) }
             (self.numbers())
         }
     }
@@ -144,6 +161,23 @@ impl Plot {
         html! {
             path.bound d=(format!("M{left} {y}H{right}{drop}")) {}
             text.bound x=(left + 6.0) y=(tenth(y + beside)) { (short(&bound.label, LABEL)) }
+        }
+    }
+
+    fn measured(&self, measured: &Measured) -> Markup {
+        let inside = |value: f64| value.clamp(self.y.0, self.y.1);
+        let (low, high) = (inside(measured.interval.0), inside(measured.interval.1));
+        let ((x, bottom), (_, top)) = (self.place((measured.at, low)), self.place((measured.at, high)));
+        let (left, right) = (tenth(x - 3.0), tenth(x + 3.0));
+        html! {
+            g.measured {
+                title { (short(&measured.about, 2 * LABEL)) }
+                path d=(format!("M{left} {bottom}H{right}M{x} {bottom}V{top}M{left} {top}H{right}")) {}
+                @if inside(measured.value) == measured.value {
+                    @let (_, y) = self.place((measured.at, measured.value));
+                    circle cx=(x) cy=(y) r="2.5" {}
+                }
+            }
         }
     }
 

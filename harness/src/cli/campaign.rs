@@ -1,6 +1,7 @@
 //! `fsct campaign`: errors by the million, and the shortest list of actions behind what fails.
 
 mod bits;
+mod noise;
 mod random;
 mod record;
 mod replay;
@@ -40,6 +41,8 @@ enum What {
     Random(random::Args),
     /// Every corruption of FSP_VerifyRecord with so many bits inverted, each at a start-up of an armed FS-Device
     Record(record::Args),
+    /// Noise on the way to the DUT: how often a corrupted SPDU is taken, beside the exact residual error probability of CRC-16
+    Noise(noise::Args),
     /// Carry a list of actions out that a campaign has written
     Replay(replay::Args),
 }
@@ -96,6 +99,7 @@ pub fn run(args: &Args) -> u8 {
         What::Bits(args) => bits::run(args),
         What::Random(args) => random::run(args),
         What::Record(args) => record::run(args),
+        What::Noise(args) => noise::run(args),
         What::Replay(args) => replay::run(args),
     };
     done.unwrap_or_else(|code| code)

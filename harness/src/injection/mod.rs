@@ -9,6 +9,7 @@ pub mod bound;
 pub mod corruption;
 pub mod exhaustive;
 pub mod finding;
+pub mod noise;
 pub mod random;
 pub mod record;
 pub mod shrink;

@@ -1,6 +1,6 @@
 //! Drawings over logarithmic axes.
 
-use fsct_reports::{Bound, Curve, Plot, plots};
+use fsct_reports::{Bound, Curve, Measured, Plot, plots};
 
 fn plot() -> Plot {
     Plot {
@@ -18,6 +18,11 @@ fn plot() -> Plot {
         bounds: vec![
             Bound { label: "limit".to_owned(), level: 1e-1, upto: 1.0 },
             Bound { label: "stated".to_owned(), level: 1e-2, upto: 1e-1 },
+        ],
+        measured: vec![
+            Measured { about: "seen twice".to_owned(), at: 1e-1, value: 2e-2, interval: (1e-2, 3e-2) },
+            // Nothing seen: the dot would lie below the drawing, the interval ends at its edge.
+            Measured { about: "<never> seen".to_owned(), at: 1e-2, value: 0.0, interval: (0.0, 1e-3) },
         ],
     }
 }

@@ -94,6 +94,7 @@ fn plot(survey: &Survey) -> Plot {
         y: (highest * BELOW, highest),
         curves: survey.found.iter().map(curve).collect(),
         bounds,
+        measured: Vec::new(),
     }
 }
 
