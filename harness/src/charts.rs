@@ -5,6 +5,7 @@
 //! an expiry is waited for, whatever its FSP_Watchdog.
 
 mod device;
+mod drawn;
 mod master;
 
 use crate::coverage::Coverage;
@@ -13,6 +14,7 @@ use crate::tours::emit::{Told, covered, list, requirements, step};
 use fsct_adapters::Role;
 use fsct_proof::{Line, Model, Outcome, PROPERTIES, Property, Reading, Side, Turn, Verdict, replay};
 use fsct_protocol::scl::T;
+use fsct_reports::{Ladder, ladders};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
@@ -129,6 +131,13 @@ pub fn emit(outcomes: &[(&Model, &Outcome)], coverage: &BTreeMap<String, Coverag
     let about = "Shortest ways to what a reading of the tables breaks, and to what the tables allow";
     let head = format!("# Made by `{command}`. Not to be changed by hand.\nsuite: {SUITE}\nabout: {about}\ncases:\n");
     (!cases.is_empty()).then(|| head + &cases.join("\n"))
+}
+
+/// The charts of these outcomes as a drawing, each with what was explored; `None` when there is none.
+pub fn draw(outcomes: &[(&Model, &Outcome)], explored: impl Fn(&Model) -> String) -> Option<String> {
+    let charts = outcomes.iter().filter_map(|(model, outcome)| Chart::of(model, outcome));
+    let drawn: Vec<Ladder> = charts.map(|chart| drawn::ladder(&chart, &explored(chart.model))).collect();
+    (!drawn.is_empty()).then(|| ladders(&drawn))
 }
 
 fn case(chart: &Chart<'_>, role: Role, coverage: &Coverage) -> String {

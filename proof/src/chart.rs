@@ -111,6 +111,18 @@ fn turn(world: &World, from: Joint, step: &Step) -> Turn {
     }
 }
 
+impl Line {
+    /// The SPDU as it was sent: MCount, setSD, ChFAckReq, process data.
+    pub fn sent(&self) -> String {
+        spdu(&self.turn)
+    }
+
+    /// The answer as it was sent: DCount_i, SDset, DCommErr, DTimeout; `-` is all zero.
+    pub fn answered(&self) -> String {
+        self.turn.status.map_or("-".to_owned(), answer)
+    }
+}
+
 impl From<Turn> for Line {
     fn from(turn: Turn) -> Line {
         Line {

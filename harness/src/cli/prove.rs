@@ -4,6 +4,7 @@ use super::{Cases, RIG, USAGE, fail, print};
 use crate::charts;
 use fsct_proof::{Line, Model, Outcome, PROPERTIES, Property, Reading, Timing, Verdict, prove_all, reachable, text};
 use fsct_protocol::Edition;
+use fsct_reports::visible;
 use serde_json::{Value, json};
 use std::path::Path;
 use std::path::PathBuf;
@@ -54,6 +55,9 @@ pub struct Args {
     /// Write every chart as a case into this file of cases, for `fsct run FILE`
     #[arg(long, value_name = "FILE")]
     emit: Option<PathBuf>,
+    /// Draw every chart into this SVG file
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
     #[command(flatten)]
     cases: Cases,
 }
@@ -85,7 +89,7 @@ pub fn run(args: &Args) -> u8 {
             } else {
                 proven.iter().for_each(show);
             }
-            match args.emit.as_ref().map_or(Ok(()), |file| emit(args, &proven, file)) {
+            match write(args, &proven) {
                 Ok(()) => {
                     proven.iter().flat_map(|(.., outcomes)| outcomes).map(|(outcome, _)| code(outcome)).fold(0, worse)
                 }
@@ -96,17 +100,28 @@ pub fn run(args: &Args) -> u8 {
     }
 }
 
-/// Every chart as a case. Without a chart nothing is written: an empty suite would only look like one.
-fn emit(args: &Args, proven: &[Proven], file: &Path) -> Result<(), u8> {
-    let library = args.cases.load()?;
-    let written = charts::emit(&charted(proven), &library.coverage, &command(args));
-    match written {
-        Some(text) => std::fs::write(file, text)
-            .map_err(|error| fail(RIG, format!("{} cannot be written: {error}", file.display()))),
+/// Every chart as a case and as a drawing, as asked for. Without a chart nothing is written: an empty suite would only look like one.
+fn write(args: &Args, proven: &[Proven]) -> Result<(), u8> {
+    let charted = charted(proven);
+    if let Some(file) = &args.emit {
+        let library = args.cases.load()?;
+        put(file, charts::emit(&charted, &library.coverage, &command(args)))?;
+    }
+    match &args.svg {
+        Some(file) => put(file, charts::draw(&charted, described)),
+        None => Ok(()),
+    }
+}
+
+fn put(file: &Path, text: Option<String>) -> Result<(), u8> {
+    match text.map(|text| std::fs::write(file, text)) {
         None => {
-            eprintln!("fsct: everything holds, so there is no chart to write to {}", file.display());
+            let holds = format!("nothing is violated, so there is no chart to write to {}", file.display());
+            eprintln!("fsct: {}", visible(&holds));
             Ok(())
         }
+        Some(Ok(())) => Ok(()),
+        Some(Err(error)) => Err(fail(RIG, format!("{} cannot be written: {error}", file.display()))),
     }
 }
 
