@@ -217,8 +217,9 @@ impl Run<'_> {
         }
         let profile = planned.profile(self.profile, bench.description.clock.kind);
         let variant = planned.binding.variant;
+        let allowed = planned.case.strict.iter().fold(self.allowed, Mask::without);
         let setups: Vec<Setup> = (0..bench.description.ports)
-            .map_while(|index| setup(&profile, self.allowed, &bench.description, variant, index))
+            .map_while(|index| setup(&profile, allowed, &bench.description, variant, index))
             .collect();
         let seed = |port: u64| Pcg64Mcg::seed_from_u64(self.seed ^ hash(&planned.key) ^ port);
         let testers = (0..).zip(&setups).map(|(index, setup)| Tester::new(setup, seed(index))).collect();

@@ -7,6 +7,7 @@ pub mod campaign;
 pub mod capture;
 pub mod case;
 pub mod channel;
+pub mod charts;
 pub mod cli;
 pub mod conditions;
 pub mod coverage;

@@ -3,9 +3,9 @@
 //! They are searched over the rows of `protocol`, with what a case can do to a DUT, and written as ordinary cases. The search is
 //! deterministic: the same rows give the same cases.
 
-mod device;
-mod emit;
-mod master;
+pub(crate) mod device;
+pub(crate) mod emit;
+pub(crate) mod master;
 
 pub use emit::emit;
 

@@ -2,7 +2,7 @@
 
 mod cli;
 
-use cli::fsct;
+use cli::{Folder, fsct};
 use rstest::rstest;
 use serde_json::Value;
 
@@ -54,4 +54,125 @@ fn what_cannot_be_explored_is_said(#[case] args: &[&str], #[case] sentence: &str
     let run = fsct(&[&["prove"], args].concat());
     assert_eq!(run.code, 2, "{run:?}");
     assert!(run.err.contains(sentence), "{}", run.err);
+}
+
+/// Each chart of a reading: the case, the DUT with that reading, the clause it fails by.
+#[rstest]
+#[case::c1(&["--reading", "A06=T10-not-old", "--property", "P5"], "PRM-0608", "reference-master?mutant=A06-not-old", "11.5.2")]
+#[case::c2(&["--reading", "A09=exactly-next", "--property", "P5"], "PRD-0908", "reference-device?mutant=A09-exactly-one", "11.5.3")]
+#[case::c3(&["--reading", "A08=last-valid", "--property", "P5"], "PRD-0808", "reference-device?mutant=A08-last-valid", "11.5.3")]
+#[case::c5(&["--edition", "v1.1", "--reading", "A31=0-or-1", "--property", "P2d"], "PRD-3104", "reference-device?mutant=A31-one-first", "11.5.3 Table 40 T25")]
+#[case::c6(&["--reading", "A19=sequential", "--property", "P2d"], "PRD-1904", "reference-device?mutant=A19-sequential", "11.5.3 Table 40 T29")]
+#[case::c6_heard(&["--reading", "A19=sequential", "--property", "P6-further"], "PRD-1911", "reference-device?mutant=A19-sequential", "11.5.3 Table 40 T29")]
+#[case::immediate(&["--reading", "A06=T10-not-old", "--property", "P5", "--timing", "I"], "PRM-0608", "reference-master?mutant=A06-not-old", "11.5.2")]
+fn a_chart_is_a_case_that_the_reference_passes_and_the_reading_fails(
+    #[case] args: &[&str],
+    #[case] id: &str,
+    #[case] mutant: &str,
+    #[case] clause: &str,
+) {
+    let folder = Folder::new(&format!("prove-{}-{}", id, args.len()));
+    let file = folder.0.join("chart.yaml").display().to_string();
+    let run = fsct(&[&["prove"], args, &["--emit", &file]].concat());
+    assert_eq!(run.code, 1, "the reading breaks it: {run:?}");
+    let check = fsct(&["check", &file]);
+    assert_eq!(check.code, 0, "{check:?}");
+    let address = |options: &str| format!("inproc:{options}");
+    let (reference, _) = mutant.split_once('?').expect("a mutant");
+    let passes = fsct(&["run", &file, "--dut", &address(reference), "--out", &folder.out()]);
+    assert_eq!(passes.code, 0, "{passes:?}");
+    assert!(passes.out.contains("conformant: 2 cases, 2 pass"), "{}", passes.out);
+    let fails = fsct(&["run", &file, "--dut", &address(mutant), "--out", &folder.out()]);
+    assert_eq!(fails.code, 1, "{fails:?}");
+    let told = fails.err.split_once(&format!("fail {id}[")).map(|(_, told)| told).unwrap_or_default();
+    let by = told.lines().find(|line| line.trim_start().starts_with("clause")).unwrap_or_default();
+    assert!(by.contains(clause), "{}", fails.err);
+}
+
+/// C4 has no DUT of its own; C7, C8 and C10 are about the tables, and a DUT that follows them passes.
+#[rstest]
+#[case::c4(&["--reading", "A16=last-valid", "--property", "P5"], 1, &["PRD-1608"])]
+#[case::c7(&["--property", "P6-timeout"], 0, &["PRD-0010"])]
+#[case::c8(&["--property", "P3-master"], 0, &["PRM-0006"])]
+#[case::c10(&["--property", "P7-good"], 0, &["PRM-0013"])]
+#[case::both_sides(&["--watchdog", "2", "--reading", "A37=timer-first", "--property", "P5"], 1, &["PRD-3708", "PRM-3708"])]
+fn a_chart_that_no_dut_is_failed_for_is_passed(#[case] args: &[&str], #[case] code: i32, #[case] ids: &[&str]) {
+    let folder = Folder::new(&format!("prove-{}", ids.concat()));
+    let file = folder.0.join("chart.yaml").display().to_string();
+    let run = fsct(&[&["prove"], args, &["--emit", &file]].concat());
+    assert_eq!(run.code, code, "{run:?}");
+    let text = folder.text("chart.yaml");
+    assert_eq!(text.contains("no DUT is failed for that"), code == 0, "{text}");
+    let passes = fsct(&["run", &file, "--out", &folder.out()]);
+    assert_eq!(passes.code, 0, "{passes:?}");
+    assert!(passes.out.contains(&format!("{0} cases, {0} pass", 2 * ids.len())), "{}", passes.out);
+    assert!(ids.iter().all(|id| text.contains(&format!("id: {id}"))), "{text}");
+}
+
+#[test]
+fn the_suite_of_the_library_is_what_the_command_writes() {
+    let folder = Folder::new("prove-suite");
+    let file = folder.0.join("proof.yaml").display().to_string();
+    let run = fsct(&["prove", "--reading", "A19=sequential", "--property", "P2d", "--emit", &file]);
+    assert_eq!(run.code, 1, "{run:?}");
+    let held = concat!(env!("CARGO_MANIFEST_DIR"), "/../testcases/suites/proof.yaml");
+    assert_eq!(
+        folder.text("proof.yaml"),
+        std::fs::read_to_string(held).expect("it is there"),
+        "made by the command in its first line"
+    );
+}
+
+#[test]
+fn charts_are_drawn_one_below_the_other() {
+    let folder = Folder::new("prove-svg");
+    let file = folder.0.join("charts.svg").display().to_string();
+    let run =
+        fsct(&["prove", "--reading", "A19=sequential", "--property", "P2d", "--property", "P3-master", "--svg", &file]);
+    assert_eq!(run.code, 1, "{run:?}");
+    let svg = folder.text("charts.svg");
+    assert!(svg.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\"") && svg.ends_with("</svg>\n"), "{svg}");
+    assert_eq!((svg.matches(">FS-Master<").count(), svg.matches(">FS-Device<").count()), (2, 2));
+    for shown in [
+        "P2d: behind a fault",
+        "P3-master: behind a fault",
+        "T21 T25 T26",
+        "6 SDset DCommErr LOST",
+        "BAD(1)",
+        ">PDout_D<",
+    ] {
+        assert!(svg.contains(shown), "{shown}: {svg}");
+    }
+}
+
+#[test]
+fn without_a_chart_nothing_is_written() {
+    let folder = Folder::new("prove-holds");
+    let file = folder.0.join("none.yaml");
+    let run = fsct(&["prove", "--faults", "1", "--property", "P2", "--emit", &file.display().to_string()]);
+    assert_eq!(run.code, 0, "{run:?}");
+    assert!(run.err.contains("there is no chart to write to") && !file.exists(), "{}", run.err);
+}
+
+#[rstest]
+#[case("--emit")]
+#[case("--svg")]
+fn what_cannot_be_written_is_said(#[case] option: &str) {
+    let folder = Folder::new(&format!("prove-unwritten{option}"));
+    let file = folder.0.join("no/such/folder").display().to_string();
+    let run = fsct(&["prove", "--faults", "2", "--property", "P3-master", option, &file]);
+    assert_eq!(run.code, 3, "{run:?}");
+    assert!(run.err.contains("cannot be written"), "{}", run.err);
+}
+
+#[test]
+fn a_case_names_only_tolerances_that_exist() {
+    let folder = Folder::new("prove-strict");
+    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../testcases/suites/proof.yaml"));
+    let file = folder.file("mine.yaml", &text.expect("it is there").replace("strict: [A19]", "strict: [A99]"));
+    let run = fsct(&["check", &file]);
+    assert_eq!(run.code, 2, "{run:?}");
+    assert!(run.err.contains("`A99` is no tolerance"), "{}", run.err);
+    let told = fsct(&["explain", "PRD-1904"]);
+    assert!(told.out.contains("not excused by A19"), "{}", told.out);
 }

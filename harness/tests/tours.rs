@@ -80,6 +80,8 @@ fn the_tours_are_those_of_the_rows(#[case] role: &str, #[case] committed: &str) 
 fn without_a_tour_its_goal_is_named(#[case] role: &str, #[case] id: &str, #[case] missing: &[&str]) {
     let mut library = library();
     assert_eq!(not_taken(&library, role, &cases(&library, role)), [""; 0], "the whole suite takes everything");
+    // The chart of the proof happens to take one of them as well.
+    library.suites.retain(|suite| suite.name != "proof");
     for suite in &mut library.suites {
         suite.cases.retain(|case| case.id != id);
     }

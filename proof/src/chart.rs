@@ -1,14 +1,71 @@
 //! A way through the composition as a sequence chart: one line per exchange.
 
-use crate::exchange::{Fate, Joint, Leg, Step, World, image};
+use crate::exchange::{Fate, Joint, Step, World, image};
 use crate::model::Timing;
-use fsct_protocol::scl::{Device, Master, State, Var};
+use fsct_protocol::scl::{Device, Master, Path, State, Var};
 use fsct_protocol::spdu::{Control, Status};
 use std::fmt::Write as _;
+
+/// One exchange: what crossed, what became of it, and both machines behind it.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Turn {
+    /// Control&MCnt of the SPDU that the FS-Master presents.
+    pub control: Control,
+    /// Whether that SPDU carries process data.
+    pub pdout: bool,
+    /// What becomes of it.
+    pub there: Fate,
+    /// Status&DCnt of the answer that the FS-Device presents; `None`: all zero.
+    pub status: Option<Status>,
+    /// What becomes of it.
+    pub back: Fate,
+    /// FS-Device before the exchange; in state 20 it has no power.
+    pub device_before: Device,
+    /// FS-Device behind it.
+    pub device: Device,
+    /// Transitions of the FS-Device.
+    pub device_path: Path,
+    /// SDset_DS.
+    pub sdset_ds: bool,
+    /// FS-Master before the exchange.
+    pub master_before: Master,
+    /// FS-Master behind it.
+    pub master: Master,
+    /// Transitions of the FS-Master.
+    pub master_path: Path,
+    /// ChFAck_C.
+    pub ch_f_ack_c: bool,
+    /// setSD_C.
+    pub set_sd_c: bool,
+}
+
+impl Turn {
+    /// The FS-Device has power behind the exchange.
+    pub fn powered(&self) -> bool {
+        self.device.state() != State(20)
+    }
+
+    /// DTimer has expired.
+    pub fn device_expired(&self) -> bool {
+        self.device_path.iter().any(|t| matches!(t.0, 30 | 31))
+    }
+
+    /// MTimer has expired.
+    pub fn master_expired(&self) -> bool {
+        self.master_path.iter().any(|t| matches!(t.0, 8 | 14))
+    }
+
+    /// Process data is in use at the FS-Master.
+    pub fn pdin(&self) -> bool {
+        self.master.get(Var::In) == 1
+    }
+}
 
 /// What one exchange shows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Line {
+    /// The same as values.
+    pub turn: Turn,
     /// The SPDU of the FS-Master and what became of it: MCount, setSD, ChFAckReq, process data.
     pub spdu: String,
     /// Transitions and state of the FS-Device, its inputs, and what it gives out.
@@ -22,23 +79,60 @@ pub struct Line {
 /// The lines of a way from the start.
 pub(crate) fn lines(world: &mut World, steps: &[Step]) -> Vec<Line> {
     let mut from: Joint = world.start();
-    let timing = world.model().timing;
     steps
         .iter()
         .map(|step| {
-            let (sender, before) = (world.master(from.master), world.device(from.device));
-            let (master, device) = (world.master(step.to.master), world.device(step.to.device));
-            let answering = if timing == Timing::Pipelined { before } else { device };
-            let line = Line {
-                spdu: fated(&spdu(sender), step.device.fate),
-                device: device_side(device, &step.device, before),
-                answer: fated(&image(answering).map_or("-".to_owned(), answer), step.master.fate),
-                master: master_side(master, &step.master),
-            };
+            let line = Line::from(turn(world, from, step));
             from = step.to;
             line
         })
         .collect()
+}
+
+fn turn(world: &World, from: Joint, step: &Step) -> Turn {
+    let (master_before, device_before) = (*world.master(from.master), *world.device(from.device));
+    let (master, device) = (*world.master(step.to.master), *world.device(step.to.device));
+    let answering = if world.model().timing == Timing::Pipelined { &device_before } else { &device };
+    Turn {
+        control: master_before.control(),
+        pdout: master_before.uses_pdout(),
+        there: step.device.fate,
+        status: image(answering),
+        back: step.master.fate,
+        device_before,
+        device,
+        device_path: step.device.path,
+        sdset_ds: step.device.pressed,
+        master_before,
+        master,
+        master_path: step.master.path,
+        ch_f_ack_c: step.master.pressed,
+        set_sd_c: step.master.demand,
+    }
+}
+
+impl Line {
+    /// The SPDU as it was sent: MCount, setSD, ChFAckReq, process data.
+    pub fn sent(&self) -> String {
+        spdu(&self.turn)
+    }
+
+    /// The answer as it was sent: DCount_i, SDset, DCommErr, DTimeout; `-` is all zero.
+    pub fn answered(&self) -> String {
+        self.turn.status.map_or("-".to_owned(), answer)
+    }
+}
+
+impl From<Turn> for Line {
+    fn from(turn: Turn) -> Line {
+        Line {
+            turn,
+            spdu: fated(&spdu(&turn), turn.there),
+            device: device_side(&turn),
+            answer: fated(&turn.status.map_or("-".to_owned(), answer), turn.back),
+            master: master_side(&turn),
+        }
+    }
 }
 
 /// Lines as text, in columns, numbered from 1. The last `for_ever` of them repeat.
@@ -72,9 +166,9 @@ pub fn text(lines: &[Line], for_ever: Option<usize>) -> String {
     out
 }
 
-fn spdu(master: &Master) -> String {
-    let Control { mcount, set_sd, ch_f_ack_req } = master.control();
-    let data = if master.uses_pdout() { "PDout" } else { "SDout" };
+fn spdu(turn: &Turn) -> String {
+    let Control { mcount, set_sd, ch_f_ack_req } = turn.control;
+    let data = if turn.pdout { "PDout" } else { "SDout" };
     words([
         Some(mcount.to_string().as_str()),
         set_sd.then_some("setSD"),
@@ -101,25 +195,25 @@ fn fated(image: &str, fate: Fate) -> String {
     }
 }
 
-fn way(leg: &Leg) -> String {
-    leg.path.iter().map(|t| format!("{t} ")).collect()
+fn way(path: &Path) -> String {
+    path.iter().map(|t| format!("{t} ")).collect()
 }
 
-fn device_side(device: &Device, leg: &Leg, before: &Device) -> String {
-    if device.state() == State(20) {
-        return if before.state() == State(20) { "off".to_owned() } else { "power off".to_owned() };
+fn device_side(turn: &Turn) -> String {
+    if !turn.powered() {
+        return if turn.device_before.state() == State(20) { "off".to_owned() } else { "power off".to_owned() };
     }
-    let state = format!("{}{}", way(leg), device.state());
-    let live = device.uses_pdout().then_some("PDout_D");
-    words([Some(state.as_str()), leg.pressed.then_some("SDset_DS=1"), live, None])
+    let state = format!("{}{}", way(&turn.device_path), turn.device.state());
+    let live = turn.device.uses_pdout().then_some("PDout_D");
+    words([Some(state.as_str()), turn.sdset_ds.then_some("SDset_DS=1"), live, None])
 }
 
-fn master_side(master: &Master, leg: &Leg) -> String {
-    let state = format!("{}{}", way(leg), master.state());
+fn master_side(turn: &Turn) -> String {
+    let state = format!("{}{}", way(&turn.master_path), turn.master.state());
     let acknowledged =
-        leg.path.iter().any(|t| t.0 == 10).then_some(if leg.pressed { "ChFAck_C=1" } else { "ChFAck_C=0" });
-    let live = (master.get(Var::In) == 1).then_some("PDin_M");
-    words([Some(state.as_str()), acknowledged, leg.demand.then_some("setSD_C=1"), live])
+        turn.master_path.iter().any(|t| t.0 == 10).then_some(if turn.ch_f_ack_c { "ChFAck_C=1" } else { "ChFAck_C=0" });
+    let live = turn.pdin().then_some("PDin_M");
+    words([Some(state.as_str()), acknowledged, turn.set_sd_c.then_some("setSD_C=1"), live])
 }
 
 fn words(words: [Option<&str>; 4]) -> String {

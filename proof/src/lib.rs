@@ -9,12 +9,14 @@ mod exchange;
 mod model;
 mod property;
 mod recovery;
+mod replay;
 mod search;
 
-pub use chart::{Line, text};
+pub use chart::{Line, Turn, text};
 pub use exchange::{Around, Fate, Joint, Leg, Step, World, image};
 pub use model::{Model, Reading, Timing};
-pub use property::{PROPERTIES, Property, Seen, Watch, Watched};
+pub use property::{PROPERTIES, Property, Seen, Side, Watch, Watched};
+pub use replay::replay;
 
 use search::End;
 use std::sync::Mutex;

@@ -1,5 +1,6 @@
 //! What is explored: the edition, how the tables are read, the timers, and what may go wrong.
 
+use crate::property::Side;
 use core::fmt;
 use core::str::FromStr;
 use fsct_protocol::Edition;
@@ -108,6 +109,18 @@ impl Reading {
             Reading::FirstOne => "A31=0-or-1",
             Reading::TimerFirst => "A37=timer-first",
             Reading::ReceptionFirst => "A37=reception-first",
+        }
+    }
+
+    /// Whose machine it is about.
+    pub const fn side(self) -> Side {
+        use Reading::{
+            Expected, ExpectedOrNotOld, FirstExpected, NotOld, OldJudged, ReceptionFirst, TimerFirst, ZeroJudged,
+        };
+        match self {
+            NotOld | ExpectedOrNotOld | Expected | FirstExpected => Side::Master,
+            ZeroJudged | OldJudged | TimerFirst | ReceptionFirst => Side::Both,
+            _ => Side::Device,
         }
     }
 

@@ -116,6 +116,17 @@ pub struct Watched {
 /// Says what a property makes of an exchange, given its monitor before.
 pub type Watch = fn(&Seen, u16) -> Watched;
 
+/// Whose doing it is when something does not hold.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The FS-Master.
+    Master,
+    /// The FS-Device.
+    Device,
+    /// Both together.
+    Both,
+}
+
 /// A property of the composition.
 #[derive(Debug)]
 pub struct Property {
@@ -125,6 +136,8 @@ pub struct Property {
     pub about: &'static str,
     /// Where it comes from.
     pub clause: &'static str,
+    /// Whose machine decides it.
+    pub side: Side,
     /// The measure, with its unit.
     pub measures: &'static str,
     /// The largest measure allowed.
@@ -148,6 +161,7 @@ pub static PROPERTIES: [Property; 14] = [
         name: "P1-taken",
         about: "process data put to use comes from an SPDU younger than one watchdog",
         clause: "11.5.5, Table 27 (unacceptable delay)",
+        side: Side::Both,
         measures: "exchanges since it was built",
         bound: |model| model.watchdog - u8::from(model.timing == Timing::Pipelined),
         tables: None,
@@ -157,6 +171,7 @@ pub static PROPERTIES: [Property; 14] = [
         name: "P1-live",
         about: "process data in use is younger than two watchdogs",
         clause: "11.5.5",
+        side: Side::Both,
         measures: "exchanges since its SPDU was built",
         bound: two_watchdogs,
         tables: None,
@@ -166,6 +181,7 @@ pub static PROPERTIES: [Property; 14] = [
         name: "P2",
         about: "behind a fault the FS-Master sends and gives out SD until it has seen ChFAck_C at 0 and then at 1",
         clause: "11.5.2, Table 38 (T11, T13)",
+        side: Side::Master,
         measures: "early restarts",
         bound: none,
         tables: None,
@@ -175,6 +191,7 @@ pub static PROPERTIES: [Property; 14] = [
         name: "P2d",
         about: "behind a fault or power cycle of the FS-Device its PDout_D is SD until a later acknowledgment",
         clause: "11.5.2, 11.5.3",
+        side: Side::Device,
         measures: "early restarts",
         bound: none,
         tables: None,
@@ -184,6 +201,7 @@ pub static PROPERTIES: [Property; 14] = [
         name: "P3",
         about: "behind start and fault the FS-Device answers three times with SDset and SDout before PDout_D is live",
         clause: "11.5.3, Table 40 (SDcycles)",
+        side: Side::Device,
         measures: "answers short of three",
         bound: none,
         tables: None,
@@ -193,6 +211,7 @@ pub static PROPERTIES: [Property; 14] = [
         name: "P3-master",
         about: "behind a fault the FS-Master sends three SPDUs with SDout",
         clause: "11.4, Table 30",
+        side: Side::Master,
         measures: "SPDUs short of three",
         bound: none,
         tables: Some(
@@ -204,6 +223,7 @@ pub static PROPERTIES: [Property; 14] = [
         name: "P4",
         about: "once a side has found a fault, the other side gives out SD within one watchdog",
         clause: "11.5.5, Tables 38 and 40",
+        side: Side::Both,
         measures: "exchanges from detection to SD",
         bound: |model| model.watchdog,
         tables: None,
@@ -213,6 +233,7 @@ pub static PROPERTIES: [Property; 14] = [
         name: "P5",
         about: "a healthy link and a willing operator bring back operation from everywhere",
         clause: "11.5.2, 11.5.3",
+        side: Side::Both,
         measures: "exchanges to operation",
         bound: |_| u8::MAX,
         tables: None,
@@ -222,6 +243,7 @@ pub static PROPERTIES: [Property; 14] = [
         name: "P6-comm",
         about: "DCommErr is seen in one or two answers behind the latest error",
         clause: "11.5.3, Table 40 (CommErrCount)",
+        side: Side::Device,
         measures: "answers with DCommErr",
         bound: |_| 2,
         tables: None,
@@ -231,6 +253,7 @@ pub static PROPERTIES: [Property; 14] = [
         name: "P6-timeout",
         about: "DTimeout is seen in one or two answers behind the latest timeout",
         clause: "11.5.3, Table 40 (TimeoutCount)",
+        side: Side::Device,
         measures: "answers with DTimeout",
         bound: |_| 2,
         tables: Some("T29 leaves DTimeout as it is in each cycle with an error (Table 40)"),
@@ -240,6 +263,7 @@ pub static PROPERTIES: [Property; 14] = [
         name: "P6-further",
         about: "an error or timeout is seen in at least one further answer",
         clause: "11.5.3, Table 40 (CommErrCount, TimeoutCount)",
+        side: Side::Device,
         measures: "reports withheld",
         bound: none,
         tables: None,
@@ -249,6 +273,7 @@ pub static PROPERTIES: [Property; 14] = [
         name: "P7-live",
         about: "process data is never taken from an answer older than the SPDU it seems to mirror",
         clause: "11.5.2, Table 27 (incorrect sequence)",
+        side: Side::Master,
         measures: "such answers in use",
         bound: none,
         tables: None,
@@ -258,6 +283,7 @@ pub static PROPERTIES: [Property; 14] = [
         name: "P7-good",
         about: "an answer older than the SPDU it seems to mirror never counts as good",
         clause: "11.5.2, Table 27 (incorrect sequence)",
+        side: Side::Master,
         measures: "such answers counted",
         bound: none,
         tables: Some(
@@ -269,6 +295,7 @@ pub static PROPERTIES: [Property; 14] = [
         name: "P8",
         about: "a demand brings PDout_D to SD within two watchdogs",
         clause: "11.5.5, H.4",
+        side: Side::Both,
         measures: "exchanges with live PDout_D behind the demand",
         bound: two_watchdogs,
         tables: None,

@@ -5,7 +5,7 @@
 
 use crate::exchange::{Around, Joint, Step, World};
 use crate::search::{End, Found, explore, steps_to};
-use fsct_protocol::scl::{State, Var};
+use fsct_protocol::scl::{Device, Master, State, Var};
 use std::collections::HashMap;
 
 /// What was found about recovery.
@@ -37,7 +37,10 @@ pub fn recovery(world: &mut World) -> Recovery {
             world.steps(*joint, Around::Willing).iter().filter_map(|step| numbers.get(&step.to).copied()).collect()
         })
         .collect();
-    let mut needed: Vec<Option<u8>> = joints.iter().map(|joint| operates(world, *joint).then_some(0)).collect();
+    let mut needed: Vec<Option<u8>> = joints
+        .iter()
+        .map(|joint| operates(world.master(joint.master), world.device(joint.device)).then_some(0))
+        .collect();
     let mut open: Vec<usize> = (0..joints.len()).filter(|number| needed[*number].is_none()).collect();
     loop {
         let settled: Vec<(usize, u8)> = open
@@ -91,8 +94,7 @@ fn tail(
 }
 
 /// Operation: both machines in their regular loops, process data in use both ways.
-fn operates(world: &World, joint: Joint) -> bool {
-    let (master, device) = (world.master(joint.master), world.device(joint.device));
+pub(crate) fn operates(master: &Master, device: &Device) -> bool {
     master.state() == State(5)
         && master.get(Var::In) == 1
         && master.get(Var::SetSd) == 0

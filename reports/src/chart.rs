@@ -12,11 +12,11 @@ const MOST: usize = 60;
 const HEAD: usize = 16;
 /// Rows after the finding.
 const AFTER: usize = 6;
-const WIDTH: i32 = 900;
-const MASTER: i32 = 190;
-const DEVICE: i32 = 640;
-const MIDDLE: i32 = (MASTER + DEVICE) / 2;
-const LABEL: i32 = MASTER + 12;
+pub(crate) const WIDTH: i32 = 900;
+pub(crate) const MASTER: i32 = 190;
+pub(crate) const DEVICE: i32 = 640;
+pub(crate) const MIDDLE: i32 = (MASTER + DEVICE) / 2;
+pub(crate) const LABEL: i32 = MASTER + 12;
 const TOP: i32 = 44;
 /// Characters of a line in a box, and the width of the box: right of the right lifeline, and between the two.
 const NARROW: (usize, i32) = (32, WIDTH - DEVICE - 8);
@@ -271,12 +271,12 @@ fn beside(via: &[String], y: i32, side: Side) -> Markup {
 }
 
 /// A line and its tip in one path; the tip is a part of its own, or the line would be filled up to it.
-fn arrow(from: i32, to: i32, y: i32) -> String {
+pub(crate) fn arrow(from: i32, to: i32, y: i32) -> String {
     let back = if to > from { -9 } else { 9 };
     format!("M{from} {y}H{to}M{to} {y}l{back} -4v8z")
 }
 
 /// What says falsified on an arrow, and lost at its end.
-fn cross(x: i32, y: i32) -> Markup {
+pub(crate) fn cross(x: i32, y: i32) -> Markup {
     html! { path.cross d=(format!("M{} {} l10 10m0 -10l-10 10", x - 5, y - 5)) {} }
 }

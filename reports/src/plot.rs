@@ -15,12 +15,16 @@ const LABEL: usize = 80;
 /// Room that the label at a curve needs.
 const ROOM: f64 = 22.0;
 
-const STYLE: &str = "
+/// Colours and letters of drawings that are files of their own.
+pub(crate) const PALETTE: &str = "
 svg { --ink: #1c2430; --soft: #5b6675; --line: #d5dbe3; --paper: #fff; --curve: #0b5cad; --bound: #b3261e; --mark: #8a6100; }
 @media (prefers-color-scheme: dark) {
   svg { --ink: #e4e9f0; --soft: #9aa6b5; --line: #37414e; --paper: #14191f; --curve: #7fb8f0; --bound: #ff8a80; --mark: #e0b252; }
 }
 text { font: 12px ui-monospace, 'DejaVu Sans Mono', monospace; fill: var(--ink); }
+";
+
+const STYLE: &str = "
 .title { font-weight: 650; font-size: 14px; } .soft { fill: var(--soft); }
 .paper { fill: var(--paper); } .grid { stroke: var(--line); } .frame { fill: none; stroke: var(--soft); }
 .curve { fill: none; stroke: var(--curve); stroke-width: 1.3; }
@@ -92,7 +96,7 @@ pub fn plots(plots: &[Plot]) -> String {
     let markup = html! {
         svg xmlns="http://www.w3.org/2000/svg" role="img" viewBox=(format!("0 0 {WIDTH} {height}")) {
             title { (plots.iter().map(|plot| short(&plot.title, LABEL)).collect::<Vec<_>>().join("; ")) }
-            style { (PreEscaped(STYLE)) }
+            style { (PreEscaped(PALETTE)) (PreEscaped(STYLE)) }
             rect.paper width=(WIDTH) height=(height) {}
             @for (number, plot) in plots.iter().enumerate() {
                 g transform=(format!("translate(0 {})", HEIGHT * number as f64)) { (plot.draw()) }

@@ -1,9 +1,11 @@
 //! How the deliberate faults of a reference DUT are listed: a row each, with its name, the clause it violates, and what is
-//! wrong in one sentence.
+//! wrong in one sentence. One that is a reading of the tables may be called by that as well.
 
 /// Makes an enum of such rows.
 macro_rules! catalogue {
-    ($(#[$about:meta])* pub enum $Mutant:ident { $($Variant:ident $name:literal, $clause:literal: $wrong:literal)* }) => {
+    ($(#[$about:meta])* pub enum $Mutant:ident {
+        $($Variant:ident $name:literal $(or $alias:literal)?, $clause:literal: $wrong:literal)*
+    }) => {
         $(#[$about])*
         #[derive(Copy, Clone, Debug, PartialEq, Eq, Hash)]
         pub enum $Mutant {
@@ -29,9 +31,14 @@ macro_rules! catalogue {
                 match self { $($Mutant::$Variant => $wrong,)* }
             }
 
-            /// The mutant of this name.
+            /// The reading it follows, where that is another name for it.
+            pub const fn alias(self) -> Option<&'static str> {
+                match self { $($Mutant::$Variant => [$(Some($alias),)? None][0],)* }
+            }
+
+            /// The mutant of this name, or of this alias.
             pub fn from_name(name: &str) -> Option<$Mutant> {
-                $Mutant::ALL.iter().copied().find(|mutant| mutant.name() == name)
+                $Mutant::ALL.iter().copied().find(|mutant| mutant.name() == name || mutant.alias() == Some(name))
             }
         }
 

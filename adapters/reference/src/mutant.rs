@@ -102,15 +102,17 @@ catalogue! {
             "MCount 0 is taken in the first SPDU alone."
         ZeroReloadsSdCycles "zero-reloads-sd-cycles", "11.5.3 Table 40 T22":
             "MCount 0 in operation loads SDcycles."
+        ExactlyOne "A09-exactly-one", "11.5.3 Table 40 T24, T27":
+            "An SPDU whose MCount is not the next one is left alone, MCount 0 included."
         WrapToZero "wrap-to-zero", "11.4.6":
             "After MCount 7 only 0 is taken."
         FirstCounterAny "first-counter-any", "11.5.3 Table 40 T21":
             "The first SPDU may carry any MCount."
-        FirstCounterOne "first-counter-one", "11.5.3 Table 40 T21, iec2022":
+        FirstCounterOne "first-counter-one" or "A31-one-first", "11.5.3 Table 40 T21, iec2022":
             "The first SPDU may carry MCount 1."
         FirstSpduUnchecked "first-spdu-unchecked", "11.5.3 Table 40 T21":
             "The first SPDU is taken without a check."
-        PreviousIsLastGood "previous-is-last-good", "11.5.3 Table 40":
+        PreviousIsLastGood "previous-is-last-good" or "A08-last-valid", "11.5.3 Table 40":
             "The counter of an SPDU with CommErr does not become the previous one."
         OldTakenInOperation "old-taken-in-operation", "11.5.3 Table 40 T24":
             "An SPDU with the previous counter is checked instead of ignored."
@@ -210,6 +212,8 @@ catalogue! {
             "While SDcycles runs down after a fault setSD_DC is cleared."
         T29KeepsDCommErr "t29-keeps-d-comm-err", "11.5.3 Table 40 T29":
             "A CommErr while a fault is worked off does not set DCommErr in its own answer."
+        Sequential "A19-sequential", "11.5.3 Table 40 T29":
+            "A CommErr while a fault is worked off uses CommErrCount and TimeoutCount up at once."
         T29KeepsDCount "t29-keeps-d-count", "11.5.3 Table 40 T29":
             "Answers after a fault carry DCount_i of before."
         T29KeepsSdCycles "t29-keeps-sd-cycles", "11.5.3 Table 40 T29":

@@ -178,7 +178,9 @@ impl Scl {
             return;
         }
         let zero_old = self.is(Mutant::ZeroOldAfterTimeout) && self.status.d_timeout && spdu.counter() == 0;
-        let not_old = self.m_count != Some(spdu.counter()) && !zero_old;
+        let left_alone =
+            self.is(Mutant::ExactlyOne) && self.m_count.map(|previous| previous % 7 + 1) != Some(spdu.counter());
+        let not_old = self.m_count != Some(spdu.counter()) && !zero_old && !left_alone;
         match self.state {
             State::WaitOnSpdu21 => self.check_spdu_22(now, octets, &spdu, inputs),
             State::WaitOnSpdu24 if not_old => self.check_spdu_22(now, octets, &spdu, inputs),
@@ -280,6 +282,9 @@ impl Scl {
             self.use_sd(T29);
             if comm_err {
                 self.report_comm_err(T29);
+                if self.is(Mutant::Sequential) {
+                    self.report_once_more();
+                }
             } else {
                 self.count_sd_cycle(spdu);
                 self.report_once_more();

@@ -6,6 +6,7 @@ mod sweep;
 
 pub use sweep::{Axis, Binding, Expansion};
 
+use crate::oracle::{Mask, Tolerances};
 use crate::problem::{Problem, Source, suggestion};
 use crate::tree::{self, Fields};
 use crate::yaml::{self, Node, Value};
@@ -51,6 +52,8 @@ pub struct Case {
     pub role: Role,
     /// Points of control and observation it cannot do without.
     pub needs: Vec<Pco>,
+    /// Tolerances that do not excuse a DUT in it.
+    pub strict: Mask,
     /// Its sweep, in the order of the file.
     pub sweep: Vec<Axis>,
     /// Start condition, reached and verified first.
@@ -140,6 +143,7 @@ fn case(
     let role = fields.word("dut", ROLES);
     let needs = fields.texts("needs");
     let features = fields.texts("features");
+    let excuses = fields.texts("strict");
     let axes = fields.get("sweep");
     let start = fields.text("start");
     let steps = fields.get("steps");
@@ -161,6 +165,13 @@ fn case(
             None => {
                 problem(&at, format!("`{text}` is no point of control; {}", suggestion(&text, Pco::ALL.map(Pco::name))))
             }
+        }
+    }
+    let mut strict = Mask::NONE;
+    for (text, at) in excuses {
+        match Tolerances::number(&text) {
+            Some(number) => strict = strict.with(number),
+            None => problem(&at, format!("`{text}` is no tolerance, A01 to A38 are: `fsct explain A19`")),
         }
     }
     let mut transitions = Vec::new();
@@ -194,6 +205,7 @@ fn case(
         scenario,
         role: role?,
         needs: wanted,
+        strict,
         sweep,
         start: start?.0,
         covers: transitions,

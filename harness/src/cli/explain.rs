@@ -66,6 +66,10 @@ fn case(library: &Library, id: &str) -> bool {
             print(format!("judges {id} ({}, {}): {}", clauses(record), record.level.name(), record.text));
         }
     }
+    if !case.strict.is_empty() {
+        let strict: Vec<String> = case.strict.iter().map(|number| format!("A{number:02}")).collect();
+        print(format!("not excused by {}", strict.join(" ")));
+    }
     let covers: Vec<String> = case.covers.iter().map(|number| format!("T{number}")).collect();
     if !covers.is_empty() {
         print(format!("covers {}", covers.join(" ")));

@@ -1,9 +1,13 @@
 //! `fsct prove`: what the tables of the SCL can and cannot do, over everything that a black channel, the power and an operator may do.
 
-use super::{USAGE, fail, print};
+use super::{Cases, RIG, USAGE, fail, print};
+use crate::charts;
 use fsct_proof::{Line, Model, Outcome, PROPERTIES, Property, Reading, Timing, Verdict, prove_all, reachable, text};
 use fsct_protocol::Edition;
+use fsct_reports::visible;
 use serde_json::{Value, json};
+use std::path::Path;
+use std::path::PathBuf;
 use std::time::Duration;
 
 /// Exit code when something is violated that the tables do not allow by default.
@@ -48,6 +52,14 @@ pub struct Args {
     /// One JSON document
     #[arg(long)]
     json: bool,
+    /// Write every chart as a case into this file of cases, for `fsct run FILE`
+    #[arg(long, value_name = "FILE")]
+    emit: Option<PathBuf>,
+    /// Draw every chart into this SVG file
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+    #[command(flatten)]
+    cases: Cases,
 }
 
 /// A number of disturbed exchanges.
@@ -77,10 +89,78 @@ pub fn run(args: &Args) -> u8 {
             } else {
                 proven.iter().for_each(show);
             }
-            proven.iter().flat_map(|(.., outcomes)| outcomes).map(|(outcome, _)| code(outcome)).fold(0, worse)
+            match write(args, &proven) {
+                Ok(()) => {
+                    proven.iter().flat_map(|(.., outcomes)| outcomes).map(|(outcome, _)| code(outcome)).fold(0, worse)
+                }
+                Err(code) => code,
+            }
         }
         Err(sentence) => fail(USAGE, sentence),
     }
+}
+
+/// Every chart as a case and as a drawing, as asked for. Without a chart nothing is written: an empty suite would only look like one.
+fn write(args: &Args, proven: &[Proven]) -> Result<(), u8> {
+    let charted = charted(proven);
+    if let Some(file) = &args.emit {
+        let library = args.cases.load()?;
+        put(file, charts::emit(&charted, &library.coverage, &command(args)))?;
+    }
+    match &args.svg {
+        Some(file) => put(file, charts::draw(&charted, described)),
+        None => Ok(()),
+    }
+}
+
+fn put(file: &Path, text: Option<String>) -> Result<(), u8> {
+    match text.map(|text| std::fs::write(file, text)) {
+        None => {
+            let holds = format!("nothing is violated, so there is no chart to write to {}", file.display());
+            eprintln!("fsct: {}", visible(&holds));
+            Ok(())
+        }
+        Some(Ok(())) => Ok(()),
+        Some(Err(error)) => Err(fail(RIG, format!("{} cannot be written: {error}", file.display()))),
+    }
+}
+
+fn charted(proven: &[Proven]) -> Vec<(&Model, &Outcome)> {
+    proven.iter().flat_map(|(model, _, outcomes)| outcomes.iter().map(move |(outcome, _)| (model, outcome))).collect()
+}
+
+/// The command that makes these cases, without what is the default.
+fn command(args: &Args) -> String {
+    let mut command = "fsct prove".to_owned();
+    let mut add = |name: &str, value: &str| {
+        command += &format!(" --{name}");
+        if !value.is_empty() {
+            command += &format!(" {value}");
+        }
+    };
+    let default = Model::new(args.edition);
+    if args.edition != Edition::Iec2022 {
+        add("edition", args.edition.name());
+    }
+    args.readings.iter().for_each(|reading| add("reading", reading.name()));
+    if args.watchdog != default.watchdog {
+        add("watchdog", &args.watchdog.to_string());
+    }
+    if args.timing != default.timing {
+        add("timing", &args.timing.to_string());
+    }
+    if let Some(count) = args.faults.0 {
+        add("faults", &count.to_string());
+    }
+    if args.no_power_cycles {
+        add("no-power-cycles", "");
+    }
+    args.properties.iter().for_each(|property| add("property", property));
+    if args.all {
+        add("all", "");
+    }
+    add("emit", "");
+    command
 }
 
 /// A violation outweighs what is not known.

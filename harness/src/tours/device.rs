@@ -4,7 +4,7 @@ use super::Subject;
 use super::emit::{Told, wait};
 use fsct_adapters::Role;
 use fsct_protocol::scl::device::{Readings, Received};
-use fsct_protocol::scl::{Device, Path, T, Var};
+use fsct_protocol::scl::{Device, Path, Var};
 use fsct_protocol::spdu::{Control, succ};
 
 /// An SPDU, or none for too long.
@@ -73,8 +73,8 @@ impl Subject for Bench {
     }
 }
 
-/// A tour as steps of a case. What a tolerance leaves free is not expected.
-pub fn steps(tour: &[Stimulus]) -> Vec<Told> {
+/// A tour as steps of a case.
+fn steps(tour: &[Stimulus]) -> Vec<Told> {
     let (mut bench, _) = Bench::waiting();
     let mut expiries = 0;
     let mut told = Vec::new();
@@ -95,33 +95,40 @@ pub fn steps(tour: &[Stimulus]) -> Vec<Told> {
             Jump => "exchange: {MCount: +2}".to_owned(),
             Timeout(link) => wait(expiries, link),
         };
-        let status = device.status();
-        let bit = u8::from;
-        let set_sd = matches!(stimulus, Zero | Next { set_sd: true, .. });
-        let leaves = path.iter().any(|t| t == T(28));
-        let mut expect = vec![format!("DCount_i: {}", if expired { "unchanged" } else { "mirror" })];
-        // A11: SDset of an answer to setSD.
-        if status.sd_set || error || !set_sd {
-            expect.push(format!("SDset: {}", bit(status.sd_set)));
-        }
-        // A33: an expiry leaves DCommErr alone, an error DTimeout.
-        if !(expired && before.status().d_comm_err) {
-            expect.push(format!("DCommErr: {}", bit(status.d_comm_err)));
-        }
-        if !(error && status.d_timeout) {
-            expect.push(format!("DTimeout: {}", bit(status.d_timeout)));
-        }
-        expect.push(format!("app.PDout_D: {}", if device.uses_pdout() { "live" } else { "safe" }));
-        // A20: setSD_DC with T28. A27: ChFAckReq_DC of an SPDU in error.
-        if !leaves {
-            expect.push(format!("app.setSD_DC: {}", bit(device.get(Var::SetSdDc) == 1)));
-        }
-        if !error && !expired {
-            expect.push(format!("app.ChFAckReq_DC: {}", device.get(Var::ChFAckReqDc)));
-        }
+        let expect = expected(&before, device, &path);
         told.push(Told { before: Vec::new(), action, expect, path, error });
     }
     told
+}
+
+/// What is expected of an FS-Device that has gone this way. What a tolerance leaves free is not.
+pub fn expected(before: &Device, device: &Device, path: &Path) -> Vec<String> {
+    let took = |numbers: &[u8]| path.iter().any(|t| numbers.contains(&t.0));
+    let (expired, leaves) = (took(&[30, 31]), took(&[28]));
+    let error = !expired && device.get(Var::CommErr) == 1;
+    let status = device.status();
+    let bit = u8::from;
+    let mut expect = vec![format!("DCount_i: {}", if expired { "unchanged" } else { "mirror" })];
+    // A11: SDset of an answer to setSD.
+    if status.sd_set || error || device.get(Var::SetSdRx) == 0 {
+        expect.push(format!("SDset: {}", bit(status.sd_set)));
+    }
+    // A33: an expiry leaves DCommErr alone, an error DTimeout.
+    if !(expired && before.status().d_comm_err) {
+        expect.push(format!("DCommErr: {}", bit(status.d_comm_err)));
+    }
+    if !(error && status.d_timeout) {
+        expect.push(format!("DTimeout: {}", bit(status.d_timeout)));
+    }
+    expect.push(format!("app.PDout_D: {}", if device.uses_pdout() { "live" } else { "safe" }));
+    // A20: setSD_DC with T28. A27: ChFAckReq_DC of an SPDU in error.
+    if !leaves {
+        expect.push(format!("app.setSD_DC: {}", bit(device.get(Var::SetSdDc) == 1)));
+    }
+    if !error && !expired {
+        expect.push(format!("app.ChFAckReq_DC: {}", device.get(Var::ChFAckReqDc)));
+    }
+    expect
 }
 
 /// The tours.

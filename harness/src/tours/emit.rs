@@ -49,36 +49,17 @@ pub fn emit(coverage: &Coverage) -> String {
          cases:\n"
     );
     for (number, tour) in (1..).zip(&tours) {
-        let mut covers = opening.clone();
-        for t in tour.iter().flat_map(|told| told.path.iter()) {
-            if !covers.contains(&t) {
-                covers.push(t);
-            }
-        }
-        covers.sort();
-        let mut requirements: Vec<&str> = Vec::new();
-        for id in covers.iter().filter_map(|t| coverage.requirements.get(t)) {
-            if !requirements.contains(&id.as_str()) {
-                requirements.push(id);
-            }
-        }
-        let covers: Vec<String> = covers.iter().map(T::to_string).collect();
+        let taken = covered(&opening, tour);
+        let covers: Vec<String> = taken.iter().map(T::to_string).collect();
         let mut case = format!(
             "  - id: {prefix}-{}\n    title: Tour {number} through Table {table}, {} steps from power-on\n",
             1600 + number,
             tour.len()
         );
-        list(&mut case, "    requirements: ", &requirements);
+        list(&mut case, "    requirements: ", &requirements(coverage, &taken));
         let _ = write!(case, "    dut: {role}\n    start: waiting\n    steps:\n");
         for told in tour {
-            for step in &told.before {
-                let _ = writeln!(case, "      - {step}");
-            }
-            let step = Graph::role(role).step(told.path, told.error);
-            let name = step.and_then(|place| coverage.steps.get(usize::from(place))).map_or("", String::as_str);
-            let _ = writeln!(case, "      - {}", told.action);
-            let _ = writeln!(case, "        note: {name}");
-            let _ = writeln!(case, "        expect: {{{}}}", told.expect.join(", "));
+            step(&mut case, coverage, told);
         }
         let covers: Vec<&str> = covers.iter().map(String::as_str).collect();
         list(&mut case, "    covers: ", &covers);
@@ -90,8 +71,46 @@ pub fn emit(coverage: &Coverage) -> String {
     text
 }
 
+/// What is taken, in order: this and then the steps.
+pub fn covered(opening: &[T], steps: &[Told]) -> Vec<T> {
+    let mut covers = opening.to_vec();
+    for t in steps.iter().flat_map(|told| told.path.iter()) {
+        if !covers.contains(&t) {
+            covers.push(t);
+        }
+    }
+    covers.sort();
+    covers
+}
+
+/// The requirements that taking these judges.
+pub fn requirements<'c>(coverage: &'c Coverage, taken: &[T]) -> Vec<&'c str> {
+    let mut requirements: Vec<&str> = Vec::new();
+    for id in taken.iter().filter_map(|t| coverage.requirements.get(t)) {
+        if !requirements.contains(&id.as_str()) {
+            requirements.push(id);
+        }
+    }
+    requirements
+}
+
+/// A step with its name, where it takes transitions.
+pub fn step(text: &mut String, coverage: &Coverage, told: &Told) {
+    for step in &told.before {
+        let _ = writeln!(text, "      - {step}");
+    }
+    let _ = writeln!(text, "      - {}", told.action);
+    let step = Graph::role(coverage.role).step(told.path, told.error);
+    if let Some(name) = step.and_then(|place| coverage.steps.get(usize::from(place))) {
+        let _ = writeln!(text, "        note: {name}");
+    }
+    if !told.expect.is_empty() {
+        let _ = writeln!(text, "        expect: {{{}}}", told.expect.join(", "));
+    }
+}
+
 /// A list on as many lines as it needs.
-fn list(text: &mut String, key: &str, items: &[&str]) {
+pub fn list(text: &mut String, key: &str, items: &[&str]) {
     let mut line = format!("{key}[");
     let indent = " ".repeat(key.len() - key.trim_start().len() + 2);
     for (place, item) in items.iter().enumerate() {

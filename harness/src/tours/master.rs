@@ -4,7 +4,7 @@ use super::Subject;
 use super::emit::{Told, wait};
 use fsct_adapters::Role;
 use fsct_protocol::scl::master::Answer;
-use fsct_protocol::scl::{Master, Path, T, Var};
+use fsct_protocol::scl::{Master, Path, Var};
 use fsct_protocol::spdu::{Status, inv3, succ};
 
 /// An answer with what the gateway sets meanwhile, or none for too long.
@@ -92,7 +92,7 @@ impl Subject for Bench {
     }
 }
 
-/// A tour as steps of a case. What a tolerance leaves free is not expected.
+/// A tour as steps of a case.
 fn steps(tour: &[Stimulus]) -> Vec<Told> {
     let (mut bench, _) = Bench::waiting();
     let mut expiries = 0;
@@ -133,30 +133,38 @@ fn steps(tour: &[Stimulus]) -> Vec<Told> {
             set.push(format!("setSD_C: {}", u8::from(set_sd)));
         }
         (acked, stopped) = (ack, set_sd);
-        let bit = u8::from;
-        let data = |live: bool| if live { "live" } else { "safe" };
-        let restarted = path.iter().any(|t| t == T(11));
-        let device_stopped = matches!(stimulus, Good { sd_set: true, .. });
-        let mut expect = vec![
-            format!("MCount: {}", if expired { "0" } else { "next" }),
-            format!("setSD: {}", bit(control.set_sd)),
-            format!("ChFAckReq: {}", bit(control.ch_f_ack_req)),
-        ];
-        // A22: SDout may go with setSD 0 while the FS-Device shows SDset.
-        if !(device_stopped && master.uses_pdout()) {
-            expect.push(format!("PDout: {}", data(master.uses_pdout())));
-        }
-        // A14: PDin may be one cycle late after T11.
-        if !restarted {
-            expect.push(format!("app.PDin_M: {}", data(master.get(Var::In) == 1)));
-            expect.push(format!("app.SDset_S: {}", master.get(Var::SdsetS)));
-            expect.push(format!("app.qualifier: {}", if master.get(Var::SdsetS) == 1 { "BAD" } else { "GOOD" }));
-        }
-        expect.push(format!("app.ChFAckReq_S: {}", master.get(Var::ChFAckReqS)));
+        let expect = expected(master, &path);
         let before = if set.is_empty() { Vec::new() } else { vec![format!("app: {{{}}}", set.join(", "))] };
         told.push(Told { before, action, expect, path, error });
     }
     told
+}
+
+/// What is expected of an FS-Master that has gone this way. What a tolerance leaves free is not.
+pub fn expected(master: &Master, path: &Path) -> Vec<String> {
+    let took = |numbers: &[u8]| path.iter().any(|t| numbers.contains(&t.0));
+    let (expired, restarted) = (took(&[8, 14]), took(&[11]));
+    let control = master.control();
+    let bit = u8::from;
+    let data = |live: bool| if live { "live" } else { "safe" };
+    let mut expect = vec![
+        format!("MCount: {}", if expired { "0" } else { "next" }),
+        format!("setSD: {}", bit(control.set_sd)),
+        format!("ChFAckReq: {}", bit(control.ch_f_ack_req)),
+    ];
+    // A22: SDout may go with setSD 0 while the FS-Device shows SDset.
+    let device_stopped = !expired && master.get(Var::SdsetRx) == 1;
+    if !(device_stopped && master.uses_pdout()) {
+        expect.push(format!("PDout: {}", data(master.uses_pdout())));
+    }
+    // A14: PDin may be one cycle late after T11.
+    if !restarted {
+        expect.push(format!("app.PDin_M: {}", data(master.get(Var::In) == 1)));
+        expect.push(format!("app.SDset_S: {}", master.get(Var::SdsetS)));
+        expect.push(format!("app.qualifier: {}", if master.get(Var::SdsetS) == 1 { "BAD" } else { "GOOD" }));
+    }
+    expect.push(format!("app.ChFAckReq_S: {}", master.get(Var::ChFAckReqS)));
+    expect
 }
 
 /// The tours.

@@ -76,6 +76,8 @@ catalogue! {
             "An exceptional SPDU stops MTimer."
         OnlyNewCounterAfterFault "only-new-counter-after-fault", "11.5.2 Table 38 T10":
             "In state 7 the mirrored answer is ignored if its counter is the previous one."
+        NotOld "A06-not-old", "11.5.2 Table 38 T10":
+            "In state 7 any answer is checked whose counter is not the previous one, and none with the previous one."
         AcknowledgmentResetsMcount "acknowledgment-resets-mcount", "11.5.2 Table 38 T11":
             "The acknowledgment sets MCount to 1 instead of incrementing it."
         ArmedAfterAcknowledgment "armed-after-acknowledgment", "11.5.2 Table 38 T11":

@@ -206,8 +206,12 @@ impl Scl {
 
     /// Guard of T10: expected.
     fn taken_in_7(&self, counter: u8) -> bool {
-        let waits = self.is(MasterMutant::OnlyNewCounterAfterFault) && self.d_count_i == Some(counter);
-        self.mirrored(counter) && !waits
+        let old = self.d_count_i == Some(counter);
+        match self.config.mutant {
+            Some(MasterMutant::OnlyNewCounterAfterFault) => self.mirrored(counter) && !old,
+            Some(MasterMutant::NotOld) => !old,
+            _ => self.mirrored(counter),
+        }
     }
 
     fn mirrored(&self, counter: u8) -> bool {
