@@ -2,6 +2,7 @@
 
 use crate::exchange::{Fate, Joint, Leg, Step, World, image};
 use crate::model::Timing;
+use crate::reading::Machine;
 use fsct_protocol::scl::{Device, Master, State, Var};
 use fsct_protocol::spdu::{Control, Status};
 use std::fmt::Write as _;
@@ -29,10 +30,11 @@ pub(crate) fn lines(world: &mut World, steps: &[Step]) -> Vec<Line> {
             let (sender, before) = (world.master(from.master), world.device(from.device));
             let (master, device) = (world.master(step.to.master), world.device(step.to.device));
             let answering = if timing == Timing::Pipelined { before } else { device };
+            let fated = |image: &str, to: Machine, fate: Fate| fated(image, fate, |ago| world.stored(from, to, ago));
             let line = Line {
-                spdu: fated(&spdu(sender), step.device.fate),
+                spdu: fated(&spdu(sender), Machine::Device, step.device.fate),
                 device: device_side(device, &step.device, before),
-                answer: fated(&image(answering).map_or("-".to_owned(), answer), step.master.fate),
+                answer: fated(&image(answering).map_or("-".to_owned(), answer), Machine::Master, step.master.fate),
                 master: master_side(master, &step.master),
             };
             from = step.to;
@@ -93,11 +95,13 @@ fn answer(status: Status) -> String {
     ])
 }
 
-fn fated(image: &str, fate: Fate) -> String {
+/// `stored` gives the counter of an image that was presented so many exchanges ago.
+fn fated(image: &str, fate: Fate, stored: impl Fn(u8) -> Option<u8>) -> String {
     match fate {
         Fate::Delivered => image.to_owned(),
         Fate::Lost => format!("{image} LOST"),
         Fate::Bad(counter) => format!("{image} BAD({counter})"),
+        Fate::Stored(ago) => format!("{image} STORED({} of {ago} before)", stored(ago).unwrap_or_default()),
     }
 }
 

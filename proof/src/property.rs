@@ -3,8 +3,8 @@
 //! A property watches the exchanges. Where the machines alone do not tell, it keeps a monitor: a small number that is part of the
 //! explored state. It measures something in each exchange; it holds while the measure stays within its bound.
 
-use crate::exchange::{Around, Joint, Step};
-use crate::model::{Model, Timing};
+use crate::exchange::{Around, Joint, Step, taken_from_store};
+use crate::model::{Model, Timers, Timing};
 use fsct_protocol::scl::{Device, Master, Path, State, Var};
 
 /// One exchange as a property sees it.
@@ -140,10 +140,23 @@ impl Property {
     pub(crate) fn around(&self, monitor: u16) -> Around {
         if self.name == "P8" && monitor != 0 { Around::Demand } else { Around::Free }
     }
+
+    /// Why it is not asked of a model; `None`: it is.
+    pub fn not_asked(&self, model: &Model) -> Option<&'static str> {
+        let among = |names: &[&str]| names.contains(&self.name);
+        if model.timers == Timers::Any && among(&["P1-taken", "P1-live", "P4", "P5", "P7-live", "P7-good", "P8"]) {
+            return Some("it counts exchanges, and timers that may expire in any do not");
+        }
+        if model.stores() && among(&["P1-taken", "P1-live", "P7-live", "P7-good"]) {
+            return Some("the age of a stored image is not followed");
+        }
+        (among(&["P7-order"]) && model.storing == 0)
+            .then_some("without stored SPDUs (--storing) there is no other order")
+    }
 }
 
 /// Every property, in order.
-pub static PROPERTIES: [Property; 14] = [
+pub static PROPERTIES: [Property; 15] = [
     Property {
         name: "P1-taken",
         about: "process data put to use comes from an SPDU younger than one watchdog",
@@ -264,6 +277,15 @@ pub static PROPERTIES: [Property; 14] = [
             "the counter starts again with T8 and T14, so an answer from before may mirror the new SPDU (T10, Table 38)",
         ),
         watch: Some(outdated_good),
+    },
+    Property {
+        name: "P7-order",
+        about: "process data is never taken from an SPDU presented before another that the FS-Device has processed",
+        clause: "11.5.3, Table 27 (incorrect sequence, unacceptable delay)",
+        measures: "such SPDUs in use",
+        bound: none,
+        tables: None,
+        watch: Some(disordered),
     },
     Property {
         name: "P8",
@@ -405,6 +427,18 @@ fn outdated_live(seen: &Seen, _: u16) -> Watched {
 
 fn outdated_good(seen: &Seen, _: u16) -> Watched {
     measure(seen.outdated().into())
+}
+
+/// The monitor says how many exchanges ago the SPDU was presented that the FS-Device has processed last; 0: none since power-on.
+fn disordered(seen: &Seen, monitor: u16) -> Watched {
+    let ago = taken_from_store(&seen.step.device).map_or(0, u16::from);
+    let next = match (seen.powered(), seen.answered(), monitor) {
+        (false, ..) | (true, false, 0) => 0,
+        (true, true, _) => ago + 1,
+        (true, false, monitor) => (monitor + 1).min(31),
+    };
+    let earlier = monitor != 0 && ago > monitor;
+    Watched { monitor: next, fork: None, measure: (earlier && seen.device_took(&[22]) && seen.pdout()).into() }
 }
 
 /// The monitor counts the exchanges since setSD_C is held, from 1 on; 0: not yet.
