@@ -160,10 +160,16 @@ fn together_as_one_by_one() {
     }
 }
 
-/// Timers that may expire in any exchange need no count.
-#[test]
-fn timers_without_time() {
-    assert_eq!(reachable(&Model { timers: Timers::Any, ..Model::new(NEW) }), Ok(3_606));
+/// Whatever the watchdogs are: nothing counts exchanges.
+#[rstest]
+#[case(&[], None)]
+#[case(&[Reading::Sequential], Some("P2d"))]
+fn timers_without_time(#[case] readings: &[Reading], #[case] violated: Option<&str>) {
+    let model = Model { timers: Timers::Any, ..read(NEW, readings) };
+    for name in ["P2", "P2d", "P3"] {
+        assert_eq!(shortest(&model, name).is_some(), violated == Some(name), "{name}");
+    }
+    assert!(reachable(&model) < reachable(&read(NEW, readings)));
 }
 
 #[test]
@@ -184,14 +190,28 @@ fn an_spdu_delayed_by_a_round_of_the_counter_is_taken(#[case] timing: Timing, #[
     assert_eq!((order(exchanges - 1), order(exchanges)), (false, true));
 }
 
+/// An answer from before the restart, in state 2.
 #[test]
 fn a_restart_of_the_master_takes_a_fault_along() {
     let model = Model { master_restart: true, ..Model::new(NEW) };
-    println!("restart {:?}", shortest(&model, "P2d"));
-    assert!(shortest(&model, "P2d").is_some());
+    assert_eq!(shortest(&model, "P2d"), Some(8));
+    assert_eq!(shortest(&Model::new(NEW), "P2d"), None);
+}
+
+/// What holds for a machine that changes its readings as it likes holds for each; what fails for one fails there as well.
+#[test]
+fn a_mixture_has_the_ways_of_each_of_its_readings() {
+    let mixed = |readings: &[Reading]| Model { mixed: true, ..read(NEW, readings) };
+    let harmless = [Reading::SetSdDcKept, Reading::ZeroReloads, Reading::FirstExpected, Reading::Expected];
+    assert_eq!(shortest(&mixed(&harmless), "P2d"), None);
+    let one_more = [&harmless[..], &[Reading::Sequential]].concat();
+    assert_eq!(shortest(&mixed(&one_more), "P2d"), Some(12));
+    for reading in harmless {
+        assert!(reachable(&read(NEW, &[reading])) <= reachable(&mixed(&harmless)), "{reading}");
+    }
 }
 
 #[test]
-fn stored_images() {
-    println!("k4 {:?}", reachable(&Model { storing: 4, ..Model::new(NEW) }));
+fn three_cycles_are_three_spdus_with_sd() {
+    assert_eq!(shortest(&read(NEW, &[Reading::ThreeCycles]), "P3-master"), None);
 }

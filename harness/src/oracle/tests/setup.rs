@@ -1,7 +1,7 @@
 //! What the oracle is told of bench and product.
 
 use super::*;
-use crate::oracle::{Stance, Tolerances};
+use crate::oracle::{Readings, Stance, Tolerances};
 use crate::problem::Source;
 use fsct_adapters::{Octets, Service};
 use rstest::rstest;
