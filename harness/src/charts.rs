@@ -12,7 +12,7 @@ use crate::coverage::Coverage;
 use crate::oracle::Tolerances;
 use crate::tours::emit::{Told, covered, list, requirements, step};
 use fsct_adapters::Role;
-use fsct_proof::{Line, Model, Outcome, PROPERTIES, Property, Reading, Side, Turn, Verdict, replay};
+use fsct_proof::{Line, Machine, Model, Outcome, PROPERTIES, Property, Reading, Turn, Verdict, replay};
 use fsct_protocol::scl::T;
 use fsct_reports::{Ladder, ladders};
 use std::collections::BTreeMap;
@@ -41,21 +41,12 @@ impl<'o> Chart<'o> {
 
     /// Whose doing it is: that of a reading that departs from the default, or what the property is about.
     fn sides(&self) -> &'static [Role] {
-        let of = |side| match side {
-            Side::Master => [false, true],
-            Side::Device => [true, false],
-            Side::Both => [true, true],
-        };
         let tables = matches!(self.outcome.verdict, Verdict::Tables(_)) || self.model.readings.is_empty();
-        let sides = match tables {
-            true => of(self.outcome.property.side),
-            false => self
-                .model
-                .readings
-                .iter()
-                .map(|reading| of(reading.side()))
-                .fold([false, false], |one, other| [one[0] || other[0], one[1] || other[1]]),
+        let concerned = |machine| match tables {
+            true => self.outcome.property.machines.contains(&machine),
+            false => self.model.readings.iter().any(|reading| reading.concerns(machine)),
         };
+        let sides = [Machine::Device, Machine::Master].map(concerned);
         match sides {
             [true, true] => &[Role::Device, Role::Master],
             [_, true] => &[Role::Master],
@@ -69,7 +60,9 @@ impl<'o> Chart<'o> {
 
     /// The readings by their names.
     fn readings(&self) -> String {
-        self.model.readings.iter().map(|reading| reading.name()).collect::<Vec<_>>().join(", ")
+        let Model { readings, master_readings, device_readings, .. } = self.model;
+        let all = readings.iter().chain(master_readings).chain(device_readings);
+        all.map(|reading| reading.name()).collect::<Vec<_>>().join(", ")
     }
 
     /// Two digits for the reading, two for the property; the first of several readings counts.

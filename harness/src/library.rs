@@ -7,7 +7,7 @@ use crate::coverage::Coverage;
 use crate::ledger::{Class, Ledger};
 use crate::limits;
 use crate::matrix::{self, Matrix};
-use crate::oracle::Tolerances;
+use crate::oracle::{Readings, Tolerances};
 use crate::problem::{Problem, Source, suggestion};
 use crate::profile::Profile;
 use crate::scenario::{self, Scenarios};
@@ -42,6 +42,8 @@ pub struct Library {
     pub scenarios: Option<Scenarios>,
     /// Tolerances.
     pub tolerances: Tolerances,
+    /// Which readings of the SCL a product may follow.
+    pub readings: Readings,
     /// Times and electrical limits; cases of one's own do without.
     pub limits: limits::Table,
     /// Profiles by name.
@@ -115,6 +117,7 @@ impl Library {
         let mut annex_i = None;
         let mut scenarios = None;
         let mut tolerances = None;
+        let mut readings = None;
         let mut limits = limits::Table::default();
         let mut profiles = BTreeMap::new();
         let mut coverage = BTreeMap::new();
@@ -142,12 +145,13 @@ impl Library {
                     gather(Scenarios::parse(source), &mut problems, |found| scenarios = Some(found));
                 }
                 (_, "tolerances.yaml") => {
-                    gather(Tolerances::parse(source), &mut problems, |found| tolerances = Some(found));
+                    gather(Tolerances::parse(source), &mut problems, |found| tolerances = Some((source, found)));
                 }
+                (_, "readings.yaml") => gather(Readings::parse(source), &mut problems, |found| readings = Some(found)),
                 (_, "limits.yaml") => gather(limits::parse(source), &mut problems, |found| limits = found),
                 _ => {
                     problems.push(Problem::without_place(&source.name, "is in no known place").help(
-                        "known are requirements/, suites/, profiles/, coverage/, starts.yaml, error-matrix.yaml, annex-i.yaml, scenarios.yaml, tolerances.yaml and limits.yaml",
+                        "known are requirements/, suites/, profiles/, coverage/, starts.yaml, error-matrix.yaml, annex-i.yaml, scenarios.yaml, tolerances.yaml, readings.yaml and limits.yaml",
                     ))
                 }
             }
@@ -158,8 +162,13 @@ impl Library {
             Some(scenario::GROUP) => 1,
             _ => 0,
         });
-        match tolerances {
-            Some(tolerances) if problems.is_empty() => Ok(Library {
+        match (&tolerances, &readings) {
+            (Some((source, tolerances)), Some(readings)) => problems.extend(readings.check(source, tolerances)),
+            (_, None) => problems.push(Problem::without_place("testcases/readings.yaml", "is missing")),
+            (None, _) => problems.push(Problem::without_place("testcases/tolerances.yaml", "is missing")),
+        }
+        match tolerances.zip(readings) {
+            Some(((_, tolerances), readings)) if problems.is_empty() => Ok(Library {
                 suites,
                 starts,
                 ledger,
@@ -167,15 +176,12 @@ impl Library {
                 annex_i,
                 scenarios,
                 tolerances,
+                readings,
                 limits,
                 profiles,
                 coverage,
             }),
-            Some(_) => Err(problems),
-            None => {
-                problems.push(Problem::without_place("testcases/tolerances.yaml", "is missing"));
-                Err(problems)
-            }
+            _ => Err(problems),
         }
     }
 

@@ -176,3 +176,44 @@ fn a_case_names_only_tolerances_that_exist() {
     let told = fsct(&["explain", "PRD-1904"]);
     assert!(told.out.contains("not excused by A19"), "{}", told.out);
 }
+
+/// The table that the tolerances are held against is what the command finds.
+#[test]
+fn which_readings_a_product_may_follow_is_what_was_found() {
+    let run = fsct(&["prove", "--tolerances", "--yaml"]);
+    assert_eq!(run.code, 0, "{run:?}");
+    assert_eq!(run.out, include_str!("../../testcases/readings.yaml"));
+}
+
+#[test]
+fn a_reading_is_given_to_one_machine() {
+    let run = fsct(&["prove", "--device-reading", "A20=kept", "--faults", "1", "--property", "P2", "--json"]);
+    assert_eq!(run.code, 0, "{run:?}");
+    let json: Value = serde_json::from_str(&run.out).expect("JSON");
+    assert_eq!(json[0]["readings"][0], "FS-Device A20=kept");
+}
+
+#[test]
+fn a_delay_across_a_resynchronisation_is_shown() {
+    let run = fsct(&["prove", "--storing", "2", "--watchdog", "3", "--faults", "3", "--property", "P7-order"]);
+    assert_eq!(run.code, 1, "{run:?}");
+    assert!(
+        run.out.contains("SPDUs stored for 2 exchanges") && run.out.contains("STORED(1 of 2 before)"),
+        "{}",
+        run.out
+    );
+}
+
+#[rstest]
+#[case::other_machine(&["--master-reading", "A19=sequential"], "A19=sequential is no reading of an FS-Master")]
+#[case::stored(&["--storing", "16"], "images are stored for 15 exchanges at most")]
+#[case::age(&["--storing", "1", "--property", "P1-live"], "P1-live is not asked: the age of a stored image is not followed")]
+#[case::timers(&["--timers", "nd", "--property", "P4"], "P4 is not asked: it counts exchanges")]
+#[case::kind(&["--timers", "none"], "`none` is no kind of timers; counted and nd")]
+#[case::tolerances(&["--tolerances", "--storing", "2"], "cannot be used with")]
+#[case::no_case(&["--storing", "2", "--emit", "x.yaml"], "cannot be used with")]
+fn what_is_not_asked_is_said(#[case] args: &[&str], #[case] sentence: &str) {
+    let run = fsct(&[&["prove"], args].concat());
+    assert_eq!(run.code, 2, "{run:?}");
+    assert!(run.err.contains(sentence), "{}", run.err);
+}

@@ -2,6 +2,7 @@
 
 use crate::exchange::{Fate, Joint, Step, World, image};
 use crate::model::Timing;
+use crate::reading::Machine;
 use fsct_protocol::scl::{Device, Master, Path, State, Var};
 use fsct_protocol::spdu::{Control, Status};
 use std::fmt::Write as _;
@@ -19,6 +20,8 @@ pub struct Turn {
     pub status: Option<Status>,
     /// What becomes of it.
     pub back: Fate,
+    /// Counter bits of the stored images that arrive in place of SPDU and answer, where that is what becomes of them.
+    pub stored: [Option<u8>; 2],
     /// FS-Device before the exchange; in state 20 it has no power.
     pub device_before: Device,
     /// FS-Device behind it.
@@ -99,6 +102,12 @@ fn turn(world: &World, from: Joint, step: &Step) -> Turn {
         there: step.device.fate,
         status: image(answering),
         back: step.master.fate,
+        stored: [(Machine::Device, step.device.fate), (Machine::Master, step.master.fate)].map(
+            |(to, fate)| match fate {
+                Fate::Stored(ago) => world.stored(from, to, ago),
+                _ => None,
+            },
+        ),
         device_before,
         device,
         device_path: step.device.path,
@@ -127,9 +136,9 @@ impl From<Turn> for Line {
     fn from(turn: Turn) -> Line {
         Line {
             turn,
-            spdu: fated(&spdu(&turn), turn.there),
+            spdu: fated(&spdu(&turn), turn.there, turn.stored[0]),
             device: device_side(&turn),
-            answer: fated(&turn.status.map_or("-".to_owned(), answer), turn.back),
+            answer: fated(&turn.status.map_or("-".to_owned(), answer), turn.back, turn.stored[1]),
             master: master_side(&turn),
         }
     }
@@ -187,11 +196,13 @@ fn answer(status: Status) -> String {
     ])
 }
 
-fn fated(image: &str, fate: Fate) -> String {
+/// `stored` is the counter of the image that arrives in place of this one.
+fn fated(image: &str, fate: Fate, stored: Option<u8>) -> String {
     match fate {
         Fate::Delivered => image.to_owned(),
         Fate::Lost => format!("{image} LOST"),
         Fate::Bad(counter) => format!("{image} BAD({counter})"),
+        Fate::Stored(ago) => format!("{image} STORED({} of {ago} before)", stored.unwrap_or_default()),
     }
 }
 

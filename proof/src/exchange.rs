@@ -1,16 +1,19 @@
 //! One exchange of the black channel: what both machines may do in it, and why.
 //!
-//! The machines are those of `fsct_protocol::scl`; what stands here is the channel, the power, the operator and the timers.
+//! The machines are those of `fsct_protocol::scl`, read as `machine` says; what stands here is the channel, the power, the operator
+//! and the timers.
 
-use crate::model::{Model, Reading, Timing};
+use crate::machine::{FsDevice, FsMaster, Shown};
+use crate::model::{Model, Timers, Timing};
+use crate::reading::{Machine, Reading, Reads};
 use crate::search::Spread;
-use fsct_protocol::scl::device::{Readings, Received};
+use fsct_protocol::scl::device::Received;
 use fsct_protocol::scl::master::Answer;
 use fsct_protocol::scl::{Device, Master, Path, State, Var};
-use fsct_protocol::spdu::{Control, Status, inv3, succ};
+use fsct_protocol::spdu::{Control, Status};
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hash};
-use std::rc::Rc;
+use std::sync::Arc;
 
 /// What an exchange does to an image.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Hash)]
@@ -21,6 +24,8 @@ pub enum Fate {
     Lost,
     /// An SPDU that the checks find wrong, whatever its kind, arrives with these counter bits.
     Bad(u8),
+    /// In its place arrives the image that was presented so many exchanges ago.
+    Stored(u8),
 }
 
 /// What surrounds the machines in an exchange.
@@ -39,7 +44,7 @@ pub enum Around {
 #[derive(Copy, Clone, Debug)]
 pub struct Leg {
     /// The machine behind it, by its number.
-    pub to: u16,
+    pub to: u32,
     /// Exchanges its timer has run.
     pub timer: u8,
     /// Transitions taken.
@@ -56,9 +61,9 @@ pub struct Leg {
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Joint {
     /// FS-Master, by its number.
-    pub master: u16,
+    pub master: u32,
     /// FS-Device, by its number; one in state 20 has no power.
-    pub device: u16,
+    pub device: u32,
     /// Exchanges since MTimer was started; 0 where it does not run.
     pub mtimer: u8,
     /// Exchanges since DTimer was started; 0 where it does not run.
@@ -86,7 +91,7 @@ impl Step {
 /// Machines met so far, each with a number.
 struct Met<M> {
     all: Vec<M>,
-    numbers: HashMap<M, u16>,
+    numbers: HashMap<M, u32>,
 }
 
 impl<M: Copy + Eq + Hash> Met<M> {
@@ -94,31 +99,47 @@ impl<M: Copy + Eq + Hash> Met<M> {
         Met { all: Vec::new(), numbers: HashMap::new() }
     }
 
-    /// The tables have some hundreds of machines; 65536 would mean that one of them counts without end.
-    fn number(&mut self, machine: M) -> u16 {
+    fn number(&mut self, machine: M) -> u32 {
         *self.numbers.entry(machine).or_insert_with(|| {
             self.all.push(machine);
-            (self.all.len() - 1) as u16
+            (self.all.len() - 1) as u32
         })
     }
 }
 
-type Memo<K> = HashMap<K, Rc<[Leg]>, BuildHasherDefault<Spread>>;
+type Memo<K> = HashMap<K, Arc<[Leg]>, BuildHasherDefault<Spread>>;
 
 /// The composition: knows what may happen in an exchange.
 pub struct World {
     model: Model,
-    masters: Met<Master>,
-    devices: Met<Device>,
-    master_legs: Memo<(u16, u8, Option<u8>, Around)>,
-    device_legs: Memo<(u16, u8, u8, Around)>,
+    master_ways: Vec<Reads>,
+    device_ways: Vec<Reads>,
+    /// State 7 remembers the previous counter.
+    kept: bool,
+    masters: Met<FsMaster>,
+    devices: Met<FsDevice>,
+    master_legs: Memo<(u32, u8, Offered, Around)>,
+    device_legs: Memo<(u32, u8, Offered, Around)>,
+}
+
+/// What may reach a machine in an exchange: the image presented now, and those that are stored.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Hash)]
+struct Offered {
+    now: Option<u8>,
+    before: Shown,
 }
 
 impl World {
+    /// The machines that have numbers in a search: some hundreds, and as many times more as images are stored.
+    pub(crate) const MACHINES: usize = 1 << 18;
+
     /// Nothing explored yet.
     pub fn new(model: &Model) -> World {
         World {
             model: model.clone(),
+            master_ways: model.ways(Machine::Master),
+            device_ways: model.ways(Machine::Device),
+            kept: model.ways(Machine::Master).iter().any(|reads| FsMaster::remembers(*reads)),
             masters: Met::new(),
             devices: Met::new(),
             master_legs: HashMap::default(),
@@ -126,53 +147,69 @@ impl World {
         }
     }
 
+    /// The same with fewer states: with A29 state 7 trips on anything wrong, so the previous counter it remembers there is never
+    /// looked at. [`World::new`] counts the states as the exploration did that the figures are compared with.
+    pub(crate) fn lean(model: &Model) -> World {
+        let world = World::new(model);
+        let kept = world.master_ways.iter().any(|reads| FsMaster::looks_back(*reads));
+        World { kept, ..world }
+    }
+
     /// What is explored.
     pub fn model(&self) -> &Model {
         &self.model
     }
 
+    /// Whether there are more machines than numbers for them.
+    pub(crate) fn is_full(&self) -> bool {
+        self.masters.all.len().max(self.devices.all.len()) > World::MACHINES
+    }
+
     /// The beginning: FS-Master in state 2, FS-Device without power.
     pub fn start(&mut self) -> Joint {
-        let mut master = Master::new();
-        master.start();
-        let off = self.off();
+        let off = self.off(Shown::default());
         Joint {
-            master: self.masters.number(master.settled(false)),
+            master: self.masters.number(FsMaster::started(Shown::default()).0),
             device: self.devices.number(off),
             mtimer: 0,
             dtimer: 0,
         }
     }
 
-    fn off(&self) -> Device {
-        Device::new(Readings {
-            last_valid: self.model.reads(Reading::LastValid),
-            previous_valid: self.model.reads(Reading::PreviousValid),
-            mirror_valid: self.model.reads(Reading::MirrorValid),
-            sequential: self.model.reads(Reading::Sequential),
-            ..Readings::default()
-        })
+    fn off(&self, shown: Shown) -> FsDevice {
+        FsDevice::off(self.device_ways.first().copied().unwrap_or_default(), shown)
     }
 
     /// An FS-Master by its number.
-    pub fn master(&self, number: u16) -> &Master {
-        &self.masters.all[usize::from(number)]
+    pub fn master(&self, number: u32) -> &Master {
+        &self.masters.all[number as usize].scl
     }
 
     /// An FS-Device by its number.
-    pub fn device(&self, number: u16) -> &Device {
-        &self.devices.all[usize::from(number)]
+    pub fn device(&self, number: u32) -> &Device {
+        &self.devices.all[number as usize].scl
+    }
+
+    /// The counter bits of an SPDU (to the FS-Device) or answer that was presented so many exchanges ago.
+    pub(crate) fn stored(&self, from: Joint, to: Machine, ago: u8) -> Option<u8> {
+        let shown = match to {
+            Machine::Device => self.masters.all[from.master as usize].shown,
+            Machine::Master => self.devices.all[from.device as usize].shown,
+        };
+        shown.ago(ago).map(|octet| octet >> 5)
     }
 
     /// Everything that may happen in the next exchange, the undisturbed first, each outcome once.
     pub fn steps(&mut self, from: Joint, around: Around) -> Vec<Step> {
         let mut steps = Vec::new();
-        let before = image(self.device(from.device));
-        let pipelined = (self.model.timing == Timing::Pipelined).then(|| self.master_legs(from, before, around));
+        let before = image(self.device(from.device)).map(Status::to_octet);
+        let stored = self.devices.all[from.device as usize].shown;
+        let pipelined = (self.model.timing == Timing::Pipelined)
+            .then(|| self.master_legs(from, Offered { now: before, before: stored }, around));
         for device in self.device_legs(from, around).iter() {
             let masters = pipelined.clone().unwrap_or_else(|| {
-                let answer = image(self.device(device.to));
-                self.master_legs(from, answer, around)
+                let now = image(self.device(device.to)).map(Status::to_octet);
+                self.master_legs(from, Offered { now, before: stored }, around)
             });
             steps.extend(masters.iter().map(|master| {
                 let to = Joint { master: master.to, device: device.to, mtimer: master.timer, dtimer: device.timer };
@@ -182,167 +219,156 @@ impl World {
         steps
     }
 
-    fn device_legs(&mut self, from: Joint, around: Around) -> Rc<[Leg]> {
-        let control = self.master(from.master).control();
-        let key = (from.device, from.dtimer, control.to_octet(), around);
+    fn device_legs(&mut self, from: Joint, around: Around) -> Arc<[Leg]> {
+        let master = &self.masters.all[from.master as usize];
+        let offered = Offered { now: Some(master.scl.control().to_octet()), before: master.shown };
+        let key = (from.device, from.dtimer, offered, around);
         if let Some(legs) = self.device_legs.get(&key) {
-            return Rc::clone(legs);
+            return Arc::clone(legs);
         }
-        let device = *self.device(from.device);
-        let legs = self.devices_after(device, from.dtimer, control, around);
-        let legs: Rc<[Leg]> = distinct(legs, |device| self.devices.number(device));
-        self.device_legs.insert(key, Rc::clone(&legs));
+        let device = self.devices.all[from.device as usize];
+        let legs = self.devices_after(device, from.dtimer, offered, around);
+        let legs: Arc<[Leg]> = distinct(legs, |device| self.devices.number(device));
+        self.device_legs.insert(key, Arc::clone(&legs));
         legs
     }
 
-    fn devices_after(&self, device: Device, timer: u8, control: Control, around: Around) -> Vec<(Device, Leg)> {
+    fn devices_after(&self, device: FsDevice, timer: u8, offered: Offered, around: Around) -> Vec<(FsDevice, Leg)> {
         let mut after = Vec::new();
         let leg = |path, fate, pressed, timer| Leg { to: 0, timer, path, fate, pressed, demand: false };
-        let powered = device.state() != State(20);
         let free = around != Around::Willing;
-        if !powered {
+        if device.scl.state() == State(20) {
             let mut on = device;
-            let path = on.start();
-            after.push((on, leg(path, Fate::Delivered, false, 0)));
+            let path = on.scl.start();
+            after.push((self.presented(device, on), leg(path, Fate::Delivered, false, 0)));
             if free {
-                after.push((device, leg(Path::default(), Fate::Delivered, false, 0)));
+                after.push((self.presented(device, device), leg(Path::default(), Fate::Delivered, false, 0)));
             }
             return after;
         }
-        for fate in fates(free) {
-            for pressed in [false, true].into_iter().filter(|pressed| free || !pressed) {
-                let offered = match fate {
-                    Fate::Delivered => Some(Received { control, intact: true }),
-                    Fate::Bad(mcount) => Some(Received { control: Control { mcount, ..control }, intact: false }),
-                    Fate::Lost => (device.state() == State(24) && self.model.reads(Reading::ZeroJudged))
-                        .then_some(Received { control: Control::default(), intact: false }),
-                };
-                let mut taken = device;
-                taken.set_sdset_ds(pressed);
-                let path = offered.map_or_else(Path::default, |received| self.device_receives(&mut taken, received));
-                self.settle(
-                    (device, device.timer_runs(), timer),
-                    (taken, path),
-                    |device: &mut Device| {
-                        device.set_sdset_ds(pressed);
-                        device.expire()
-                    },
-                    |device, path, timer| after.push((device.settled(), leg(path, fate, pressed, timer))),
-                );
+        for reads in self.choice(&self.device_ways, device.scl.state()) {
+            for fate in fates(free, offered) {
+                for pressed in [false, true].into_iter().filter(|pressed| free || !pressed) {
+                    let mut taken = device;
+                    taken.scl.set_sdset_ds(pressed);
+                    let path = match arriving(fate, offered) {
+                        Some((octet, intact)) => {
+                            let control = Control::from_octet(octet);
+                            taken.receive(Received { control, intact }, *reads)
+                        }
+                        None => taken.receive_zero(*reads),
+                    };
+                    self.settle(
+                        (device, device.scl.timer_runs(), timer, *reads),
+                        (taken, path),
+                        |device: &mut FsDevice| {
+                            device.scl.set_sdset_ds(pressed);
+                            device.scl.expire()
+                        },
+                        |to: FsDevice, path, timer| {
+                            after.push((self.presented(device, to.settled()), leg(path, fate, pressed, timer)));
+                        },
+                    );
+                }
             }
         }
         if free && self.model.power_cycles {
-            after.push((self.off(), leg(Path::default(), Fate::Delivered, false, 0)));
+            let off = self.presented(device, self.off(device.shown));
+            after.push((off, leg(Path::default(), Fate::Delivered, false, 0)));
         }
         after
     }
 
-    /// T21, T24, T27 with the readings that say which SPDU is looked at.
-    fn device_receives(&self, device: &mut Device, received: Received) -> Path {
-        let Received { control: Control { mcount, .. }, intact } = received;
-        let first = device.state() == State(21);
-        let next = device.previous().map(succ) == Some(mcount);
-        let valid =
-            intact && (device.counter_check(mcount) || first && mcount == 1 && self.model.reads(Reading::FirstOne));
-        let left_alone = !first
-            && (self.model.reads(Reading::ExactlyNext) && !next
-                || self.model.reads(Reading::NextOrZero) && !next && mcount != 0
-                || device.is_old(mcount) && (intact || !self.model.reads(Reading::OldJudged)));
-        if left_alone { Path::default() } else { device.process(received, valid) }
+    /// The ways a machine chooses from in this state: of those that differ in what makes no difference here, one.
+    fn choice<'a>(&self, ways: &'a [Reads], state: State) -> impl Iterator<Item = &'a Reads> {
+        let mixed = self.model.mixed;
+        ways.iter().filter(move |reads| !mixed || reads.matter_in(state))
     }
 
-    fn master_legs(&mut self, from: Joint, returned: Option<Status>, around: Around) -> Rc<[Leg]> {
-        let key = (from.master, from.mtimer, returned.map(Status::to_octet), around);
+    /// The image of this exchange goes to the store.
+    fn presented(&self, before: FsDevice, after: FsDevice) -> FsDevice {
+        let presenting = if self.model.timing == Timing::Pipelined { before } else { after };
+        let now = image(&presenting.scl).map(Status::to_octet);
+        FsDevice { shown: before.shown.then(now, self.model.storing_answers), ..after }
+    }
+
+    fn master_legs(&mut self, from: Joint, returned: Offered, around: Around) -> Arc<[Leg]> {
+        let key = (from.master, from.mtimer, returned, around);
         if let Some(legs) = self.master_legs.get(&key) {
-            return Rc::clone(legs);
+            return Arc::clone(legs);
         }
-        let master = *self.master(from.master);
+        let master = self.masters.all[from.master as usize];
         let legs = self.masters_after(master, from.mtimer, returned, around);
-        let legs: Rc<[Leg]> = distinct(legs, |master| self.masters.number(master));
-        self.master_legs.insert(key, Rc::clone(&legs));
+        let legs: Arc<[Leg]> = distinct(legs, |master| self.masters.number(master));
+        self.master_legs.insert(key, Arc::clone(&legs));
         legs
     }
 
-    fn masters_after(&self, master: Master, timer: u8, returned: Option<Status>, around: Around) -> Vec<(Master, Leg)> {
+    fn masters_after(&self, master: FsMaster, timer: u8, returned: Offered, around: Around) -> Vec<(FsMaster, Leg)> {
         let mut after = Vec::new();
-        let armed = master.get(Var::ChFAckCe) == 1;
-        let kept = [Reading::NotOld, Reading::ExpectedOrNotOld, Reading::OldJudged]
-            .iter()
-            .any(|reading| self.model.reads(*reading));
-        for fate in fates(around != Around::Willing) {
-            for (pressed, demand) in [(false, false), (true, false), (false, true), (true, true)] {
-                let possible = match around {
-                    Around::Free => true,
-                    Around::Demand => demand,
-                    Around::Willing => !demand && pressed == armed,
-                };
-                if !possible {
-                    continue;
-                }
-                let bad = |dcount_i| Answer { status: Status { dcount_i, ..Status::default() }, intact: false };
-                let offered = match (fate, returned) {
-                    (Fate::Delivered, Some(status)) => Some(Answer { status, intact: true }),
-                    (Fate::Bad(dcount_i), _) => Some(bad(dcount_i)),
-                    (Fate::Delivered, None) | (Fate::Lost, _) => {
-                        (master.state() == State(7) && self.model.reads(Reading::ZeroJudged)).then_some(bad(0))
+        let armed = master.scl.get(Var::ChFAckCe) == 1;
+        let shown = master.shown.then(Some(master.scl.control().to_octet()), self.model.storing);
+        for reads in self.choice(&self.master_ways, master.scl.state()) {
+            for fate in fates(around != Around::Willing, returned) {
+                for (pressed, demand) in [(false, false), (true, false), (false, true), (true, true)] {
+                    let possible = match around {
+                        Around::Free => true,
+                        Around::Demand => demand,
+                        Around::Willing => !demand && pressed == armed,
+                    };
+                    if !possible {
+                        continue;
                     }
-                };
-                let mut taken = master;
-                taken.set_ch_f_ack_c(pressed);
-                taken.set_set_sd_c(demand);
-                let path = offered
-                    .filter(|answer| self.master_takes(&master, *answer))
-                    .map_or_else(Path::default, |answer| taken.process(answer));
-                self.settle(
-                    (master, master.timer_runs(), timer),
-                    (taken, path),
-                    Master::expire,
-                    |master, path, timer| {
-                        let leg = Leg { to: 0, timer, path, fate, pressed, demand };
-                        after.push((master.settled(kept), leg));
-                    },
-                );
+                    let mut taken = master;
+                    taken.scl.set_set_sd_c(demand);
+                    let path = match arriving(fate, returned) {
+                        Some((octet, intact)) => {
+                            taken.receive(Answer { status: Status::from_octet(octet), intact }, pressed, *reads)
+                        }
+                        None => taken.receive_zero(pressed, *reads),
+                    };
+                    self.settle(
+                        (master, master.scl.timer_runs(), timer, *reads),
+                        (taken, path),
+                        FsMaster::expire,
+                        |master: FsMaster, path, timer| {
+                            let leg = Leg { to: 0, timer, path, fate, pressed, demand };
+                            after.push((master.settled(self.kept, shown), leg));
+                        },
+                    );
+                }
             }
         }
-        after
-    }
-
-    /// T3, T6, T10 with the readings that say which answer is looked at.
-    fn master_takes(&self, master: &Master, answer: Answer) -> bool {
-        let reads = |reading| self.model.reads(reading);
-        let dcount_i = answer.status.dcount_i;
-        let expected = dcount_i == inv3(master.get(Var::Mcount));
-        let not_old = master.previous() != Some(dcount_i);
-        match master.state().0 {
-            2 if reads(Reading::FirstExpected) => expected,
-            5 | 7 if !answer.intact && reads(Reading::OldJudged) => true,
-            5 if reads(Reading::Expected) => expected && not_old,
-            7 if reads(Reading::NotOld) => not_old,
-            7 if reads(Reading::ExpectedOrNotOld) => expected || not_old,
-            _ => master.takes(dcount_i),
+        if self.model.master_restart && around != Around::Willing {
+            let (anew, path) = FsMaster::started(shown);
+            let leg =
+                Leg { to: 0, timer: 0, path, fate: Fate::Delivered, pressed: false, demand: around == Around::Demand };
+            after.push((anew, leg));
         }
+        after
     }
 
     /// Reception against timer (A37): which of both the machine follows, or both where either may win.
     fn settle<M: Copy>(
         &self,
-        (machine, runs, timer): (M, bool, u8),
+        (machine, runs, timer, reads): (M, bool, u8, Reads),
         (taken, path): (M, Path),
         expire: impl Fn(&mut M) -> Path,
         mut follow: impl FnMut(M, Path, u8),
     ) {
-        let due = runs && timer + 1 >= self.model.watchdog;
+        let counted = self.model.timers == Timers::Counted;
+        let due = runs && (!counted || timer + 1 >= self.model.watchdog);
         let received = !path.is_empty();
-        if received && !(due && self.model.reads(Reading::TimerFirst)) {
+        if received && !(due && counted && reads.has(Reading::TimerFirst)) {
             follow(taken, path, 0);
         }
-        if due && !(received && self.model.reads(Reading::ReceptionFirst)) {
+        if due && !(received && reads.has(Reading::ReceptionFirst)) {
             let mut expired = machine;
             let path = expire(&mut expired);
             follow(expired, path, 0);
         }
-        if !received && !due {
-            follow(machine, path, if runs { timer + 1 } else { 0 });
+        if !received && !(due && counted) {
+            follow(machine, path, if runs && counted { timer + 1 } else { 0 });
         }
     }
 }
@@ -352,20 +378,42 @@ pub fn image(device: &Device) -> Option<Status> {
     (device.state().0 > 21).then(|| device.status())
 }
 
-fn fates(faulty: bool) -> impl Iterator<Item = Fate> {
-    let disturbed = [Fate::Lost].into_iter().chain((0..8).map(Fate::Bad));
+/// What the channel may do: an image that stood without a change until now is the one presented now, and not stored.
+fn fates(faulty: bool, offered: Offered) -> impl Iterator<Item = Fate> {
+    let bad = (0..8).map(Fate::Bad);
+    let disturbed = [Fate::Lost].into_iter().chain(bad).chain(offered.before.others(offered.now).map(Fate::Stored));
     [Fate::Delivered].into_iter().chain(disturbed.filter(move |_| faulty))
 }
 
+/// The control or status octet that arrives, and whether the checks find it right; `None`: nothing, or all zero.
+fn arriving(fate: Fate, offered: Offered) -> Option<(u8, bool)> {
+    match fate {
+        Fate::Delivered => offered.now.map(|octet| (octet, true)),
+        Fate::Lost => None,
+        Fate::Bad(counter) => Some((offered.now.unwrap_or_default() & 0x1F | counter << 5, false)),
+        Fate::Stored(ago) => offered.before.ago(ago).map(|octet| (octet, true)),
+    }
+}
+
 /// Each outcome once: the first way to it stays, so that an undisturbed one is preferred. A machine that goes another way to the
-/// same place is another outcome, for the properties look at the way.
-fn distinct<M>(after: Vec<(M, Leg)>, mut number: impl FnMut(M) -> u16) -> Rc<[Leg]> {
+/// same place is another outcome, for the properties look at the way, and so is one that took a stored image.
+fn distinct<M>(after: Vec<(M, Leg)>, mut number: impl FnMut(M) -> u32) -> Arc<[Leg]> {
     let mut legs: Vec<Leg> = Vec::new();
+    let outcome = |leg: &Leg| (leg.to, leg.timer, leg.path, taken_from_store(leg));
     for (machine, leg) in after {
         let leg = Leg { to: number(machine), ..leg };
-        if !legs.iter().any(|known| (known.to, known.timer, known.path) == (leg.to, leg.timer, leg.path)) {
+        if !legs.iter().any(|known| outcome(known) == outcome(&leg)) {
             legs.push(leg);
         }
     }
     legs.into()
+}
+
+/// How many exchanges ago the image was presented that a machine has processed, where it is a stored one.
+pub(crate) fn taken_from_store(leg: &Leg) -> Option<u8> {
+    let timeout = leg.path.iter().any(|t| matches!(t.0, 8 | 14 | 30 | 31));
+    match leg.fate {
+        Fate::Stored(ago) if !leg.path.is_empty() && !timeout => Some(ago),
+        _ => None,
+    }
 }

@@ -5,21 +5,29 @@
 //! to its next waiting state. [`prove`] asks a [`Property`] of everything that can then happen; docs/proof.md explains the answers.
 
 mod chart;
+mod cores;
 mod exchange;
+mod machine;
 mod model;
 mod property;
+mod reading;
 mod recovery;
 mod replay;
 mod search;
+mod tolerance;
 
 pub use chart::{Line, Turn, text};
 pub use exchange::{Around, Fate, Joint, Leg, Step, World, image};
-pub use model::{Model, Reading, Timing};
-pub use property::{PROPERTIES, Property, Seen, Side, Watch, Watched};
+pub use model::{Model, Timers, Timing};
+pub use property::{PROPERTIES, Property, Seen, Watch, Watched};
+pub use reading::{Machine, Reading};
 pub use replay::replay;
+pub use tolerance::{
+    Failing, Judged, Refused, Tolerances, demanded, failing, failing_each, mixtures, read, tolerances,
+};
 
+use cores::on_all_cores;
 use search::End;
-use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 /// What became of a property.
@@ -61,10 +69,17 @@ pub struct Outcome {
 /// Asks a property of a model.
 ///
 /// # Errors
-/// As [`Model::check`].
+/// As [`Model::check`], and where the property is not asked of such a model ([`Property::not_asked`]).
 pub fn prove(model: &Model, property: &'static Property) -> Result<Outcome, String> {
-    model.check()?;
+    check(model, &[property])?;
     Ok(asked(&mut World::new(model), property))
+}
+
+fn check(model: &Model, properties: &[&'static Property]) -> Result<(), String> {
+    model.check()?;
+    let not_asked =
+        |property: &&&Property| property.not_asked(model).map(|why| format!("{} is not asked: {why}", property.name));
+    properties.iter().find_map(|property| not_asked(&property)).map_or(Ok(()), Err)
 }
 
 /// A world that other properties have been asked of already knows more of its exchanges; the answer is the same.
@@ -102,28 +117,15 @@ pub fn reachable(model: &Model) -> Result<usize, String> {
 /// Asks several properties of a model, on all cores; the outcomes come in their order, each with how long it took.
 ///
 /// # Errors
-/// As [`Model::check`].
+/// As [`prove`].
 pub fn prove_all(model: &Model, properties: &[&'static Property]) -> Result<Vec<(Outcome, Duration)>, String> {
-    model.check()?;
-    let cores = std::thread::available_parallelism().map_or(1, usize::from).min(properties.len());
-    // The last of the list have the most states: they come first, so that no core waits for one of them alone.
-    let next = Mutex::new(properties.iter().enumerate().rev());
-    let work = || {
-        let mut world = World::new(model);
-        let mut done = Vec::new();
-        loop {
-            let Some((at, property)) = next.lock().ok().and_then(|mut next| next.next()) else { return done };
+    check(model, properties)?;
+    on_all_cores(
+        properties,
+        || World::new(model),
+        |world, property| {
             let started = Instant::now();
-            done.push((at, (asked(&mut world, property), started.elapsed())));
-        }
-    };
-    let mut done: Vec<_> = std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..cores).map(|_| scope.spawn(work)).collect();
-        workers.into_iter().flat_map(|worker| worker.join().unwrap_or_default()).collect()
-    });
-    done.sort_by_key(|(at, _)| *at);
-    if done.len() != properties.len() {
-        return Err("a search has failed".to_owned());
-    }
-    Ok(done.into_iter().map(|(_, outcome)| outcome).collect())
+            (asked(world, property), started.elapsed())
+        },
+    )
 }

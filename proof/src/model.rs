@@ -1,6 +1,6 @@
 //! What is explored: the edition, how the tables are read, the timers, and what may go wrong.
 
-use crate::property::Side;
+use crate::reading::{Machine, Reading, Reads};
 use core::fmt;
 use core::str::FromStr;
 use fsct_protocol::Edition;
@@ -36,122 +36,33 @@ impl fmt::Display for Timing {
     }
 }
 
-/// A reading of the tables that departs from the default; the numbers are those of `docs/decisions.md` and `fsct explain`.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Reading {
-    /// A05: an all-zero SPDU is checked, and found wrong, in states 7 and 24.
-    ZeroJudged,
-    /// A06: T10 takes any answer but the previous counter.
-    NotOld,
-    /// A06: T10 takes the expected counter, and any other but the previous.
-    ExpectedOrNotOld,
-    /// A06: T6 takes the expected counter alone.
-    Expected,
-    /// A08: "previous SPDU" is the last valid one.
-    PreviousValid,
-    /// A16: DCount_i is that of the last valid SPDU.
-    MirrorValid,
-    /// A08 and A16: "previous SPDU" and DCount_i are those of the last valid SPDU.
-    LastValid,
-    /// A09: T24 and T27 take the next counter alone.
-    ExactlyNext,
-    /// A09: T24 and T27 take the next counter or 0.
-    NextOrZero,
-    /// A19: T29 works off its counters in the error cycle too.
-    Sequential,
-    /// A29: a wrong SPDU trips either side although its counter is not one that is looked at.
-    OldJudged,
-    /// A30: T3 takes the expected counter alone.
-    FirstExpected,
-    /// A31: the first SPDU an FS-Device sees may carry 1.
-    FirstOne,
-    /// A37: a timer that expires in the exchange of a reception wins.
-    TimerFirst,
-    /// A37: a reception in the exchange in which the timer expires wins.
-    ReceptionFirst,
+/// When a running timer may expire.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub enum Timers {
+    /// When it has counted as many exchanges as [`Model::watchdog`].
+    #[default]
+    Counted,
+    /// In any exchange: no watchdog is too short or too long to be among them.
+    Any,
 }
 
-impl Reading {
-    /// Every reading there is.
-    pub const ALL: [Reading; 15] = [
-        Reading::ZeroJudged,
-        Reading::NotOld,
-        Reading::ExpectedOrNotOld,
-        Reading::Expected,
-        Reading::PreviousValid,
-        Reading::MirrorValid,
-        Reading::LastValid,
-        Reading::ExactlyNext,
-        Reading::NextOrZero,
-        Reading::Sequential,
-        Reading::OldJudged,
-        Reading::FirstExpected,
-        Reading::FirstOne,
-        Reading::TimerFirst,
-        Reading::ReceptionFirst,
-    ];
-
-    /// How it is called on the command line.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Reading::ZeroJudged => "A05=judged",
-            Reading::NotOld => "A06=T10-not-old",
-            Reading::ExpectedOrNotOld => "A06=T10-expected-or-not-old",
-            Reading::Expected => "A06=T6-expected",
-            Reading::PreviousValid => "A08=last-valid",
-            Reading::MirrorValid => "A16=last-valid",
-            Reading::LastValid => "A08+A16=last-valid",
-            Reading::ExactlyNext => "A09=exactly-next",
-            Reading::NextOrZero => "A09=next-or-0",
-            Reading::Sequential => "A19=sequential",
-            Reading::OldJudged => "A29=trips",
-            Reading::FirstExpected => "A30=expected",
-            Reading::FirstOne => "A31=0-or-1",
-            Reading::TimerFirst => "A37=timer-first",
-            Reading::ReceptionFirst => "A37=reception-first",
-        }
-    }
-
-    /// Whose machine it is about.
-    pub const fn side(self) -> Side {
-        use Reading::{
-            Expected, ExpectedOrNotOld, FirstExpected, NotOld, OldJudged, ReceptionFirst, TimerFirst, ZeroJudged,
-        };
-        match self {
-            NotOld | ExpectedOrNotOld | Expected | FirstExpected => Side::Master,
-            ZeroJudged | OldJudged | TimerFirst | ReceptionFirst => Side::Both,
-            _ => Side::Device,
-        }
-    }
-
-    /// Whether two readings answer the same question.
-    fn excludes(self, other: Reading) -> bool {
-        use Reading::{ExactlyNext, ExpectedOrNotOld, LastValid, MirrorValid, NextOrZero, NotOld};
-        use Reading::{PreviousValid, ReceptionFirst, TimerFirst};
-        let pairs = [
-            [NotOld, ExpectedOrNotOld],
-            [LastValid, PreviousValid],
-            [LastValid, MirrorValid],
-            [ExactlyNext, NextOrZero],
-            [TimerFirst, ReceptionFirst],
-        ];
-        pairs.iter().any(|pair| self != other && pair.contains(&self) && pair.contains(&other))
-    }
-}
-
-impl fmt::Display for Reading {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for Reading {
+impl FromStr for Timers {
     type Err = String;
 
-    fn from_str(text: &str) -> Result<Reading, String> {
-        Reading::ALL.into_iter().find(|reading| reading.name() == text).ok_or_else(|| {
-            let names: Vec<_> = Reading::ALL.iter().map(|reading| reading.name()).collect();
-            format!("`{text}` is no reading; these are: {}", names.join(", "))
+    fn from_str(text: &str) -> Result<Timers, String> {
+        match text {
+            "counted" => Ok(Timers::Counted),
+            "nd" => Ok(Timers::Any),
+            _ => Err(format!("`{text}` is no kind of timers; counted and nd (may expire in any exchange) are")),
+        }
+    }
+}
+
+impl fmt::Display for Timers {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Timers::Counted => "counted",
+            Timers::Any => "nd",
         })
     }
 }
@@ -161,16 +72,31 @@ impl FromStr for Reading {
 pub struct Model {
     /// Edition of the tables.
     pub edition: Edition,
-    /// Readings that depart from the default.
+    /// Readings that depart from the default, each followed by the machines it is about.
     pub readings: Vec<Reading>,
+    /// Readings of the FS-Master alone.
+    pub master_readings: Vec<Reading>,
+    /// Readings of the FS-Device alone.
+    pub device_readings: Vec<Reading>,
+    /// In each exchange a machine follows whichever of its readings it likes, or none, but for those that say what it remembers
+    /// (A08, A16): what holds then holds for every combination of them.
+    pub mixed: bool,
     /// FSP_Watchdog in exchanges, [`Model::WATCHDOGS`].
     pub watchdog: u8,
     /// When answers come back.
     pub timing: Timing,
+    /// When timers expire.
+    pub timers: Timers,
+    /// An SPDU that was presented up to so many exchanges ago may reach the FS-Device, [`Model::STORING`]; 0: nothing is stored.
+    pub storing: u8,
+    /// The same for answers on their way to the FS-Master.
+    pub storing_answers: u8,
     /// Most disturbed exchanges, [`Model::FAULTS`]; `None`: any number. A power cycle of the FS-Device is not one of them.
     pub faults: Option<u8>,
     /// The FS-Device may lose its power at any time for any time.
     pub power_cycles: bool,
+    /// The FS-Master may start anew at any time.
+    pub master_restart: bool,
     /// Most states kept in one search, so that memory is bounded: a state takes some 60 octets.
     pub most_states: usize,
 }
@@ -182,23 +108,61 @@ impl Model {
     pub const MOST_STATES: usize = 5_000_000;
     /// Numbers of disturbed exchanges that can be counted.
     pub const FAULTS: core::ops::RangeInclusive<u8> = 0..=14;
+    /// Exchanges for which images can be stored.
+    pub const STORING: core::ops::RangeInclusive<u8> = 0..=15;
 
     /// Both machines as the tables of an edition are read by default.
     pub fn new(edition: Edition) -> Model {
         Model {
             edition,
             readings: Vec::new(),
+            master_readings: Vec::new(),
+            device_readings: Vec::new(),
+            mixed: false,
             watchdog: 4,
             timing: Timing::Pipelined,
+            timers: Timers::Counted,
+            storing: 0,
+            storing_answers: 0,
             faults: None,
             power_cycles: true,
+            master_restart: false,
             most_states: Model::MOST_STATES,
         }
     }
 
-    /// Whether a reading is followed.
+    /// Whether a reading is followed by a machine.
     pub fn reads(&self, reading: Reading) -> bool {
-        self.readings.contains(&reading)
+        Machine::ALL.into_iter().any(|machine| self.readings_of(machine).contains(&reading))
+    }
+
+    /// The readings a machine follows.
+    pub fn readings_of(&self, machine: Machine) -> Vec<Reading> {
+        let shared = self.readings.iter().filter(|reading| reading.concerns(machine));
+        let alone = match machine {
+            Machine::Master => &self.master_readings,
+            Machine::Device => &self.device_readings,
+        };
+        shared.chain(alone).copied().collect()
+    }
+
+    /// The sets of readings a machine chooses from in each exchange.
+    pub(crate) fn ways(&self, machine: Machine) -> Vec<Reads> {
+        let all = self.readings_of(machine).into_iter().fold(Reads::default(), Reads::with);
+        if self.mixed { all.mixtures() } else { vec![all] }
+    }
+
+    /// Exchanges of an undisturbed SCL cycle.
+    pub fn scl_cycle(&self) -> u8 {
+        match self.timing {
+            Timing::Pipelined => 2,
+            Timing::Immediate => 1,
+        }
+    }
+
+    /// Whether the channel stores images, either way.
+    pub fn stores(&self) -> bool {
+        self.storing > 0 || self.storing_answers > 0
     }
 
     /// Whether it can be explored.
@@ -217,8 +181,24 @@ impl Model {
         if self.reads(Reading::FirstOne) && self.edition == Edition::Iec2022 {
             return Err(format!("{} is a reading of v1.1 alone (11.5.3): iec2022 demands 0", Reading::FirstOne));
         }
-        for (at, reading) in self.readings.iter().enumerate() {
-            if let Some(other) = self.readings.iter().skip(at + 1).find(|other| reading.excludes(**other)) {
+        let most = *Model::STORING.end();
+        if self.storing.max(self.storing_answers) > most {
+            return Err(format!("images are stored for {most} exchanges at most"));
+        }
+        for machine in Machine::ALL {
+            self.check_readings(machine)?;
+        }
+        Ok(())
+    }
+
+    fn check_readings(&self, machine: Machine) -> Result<(), String> {
+        let readings = self.readings_of(machine);
+        if let Some(reading) = readings.iter().find(|reading| !reading.concerns(machine)) {
+            return Err(format!("{reading} is no reading of an {machine}"));
+        }
+        // A machine that mixes its readings may have several answers to one question.
+        for (at, reading) in readings.iter().enumerate().filter(|_| !self.mixed) {
+            if let Some(other) = readings.iter().skip(at + 1).find(|other| reading.excludes(**other)) {
                 return Err(format!("{reading} and {other} answer the same question; take one"));
             }
         }

@@ -3,8 +3,9 @@
 //! A property watches the exchanges. Where the machines alone do not tell, it keeps a monitor: a small number that is part of the
 //! explored state. It measures something in each exchange; it holds while the measure stays within its bound.
 
-use crate::exchange::{Around, Joint, Step};
-use crate::model::{Model, Timing};
+use crate::exchange::{Around, Joint, Step, taken_from_store};
+use crate::model::{Model, Timers, Timing};
+use crate::reading::Machine;
 use fsct_protocol::scl::{Device, Master, Path, State, Var};
 
 /// One exchange as a property sees it.
@@ -116,17 +117,6 @@ pub struct Watched {
 /// Says what a property makes of an exchange, given its monitor before.
 pub type Watch = fn(&Seen, u16) -> Watched;
 
-/// Whose doing it is when something does not hold.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Side {
-    /// The FS-Master.
-    Master,
-    /// The FS-Device.
-    Device,
-    /// Both together.
-    Both,
-}
-
 /// A property of the composition.
 #[derive(Debug)]
 pub struct Property {
@@ -137,7 +127,7 @@ pub struct Property {
     /// Where it comes from.
     pub clause: &'static str,
     /// Whose machine decides it.
-    pub side: Side,
+    pub machines: &'static [Machine],
     /// The measure, with its unit.
     pub measures: &'static str,
     /// The largest measure allowed.
@@ -153,15 +143,28 @@ impl Property {
     pub(crate) fn around(&self, monitor: u16) -> Around {
         if self.name == "P8" && monitor != 0 { Around::Demand } else { Around::Free }
     }
+
+    /// Why it is not asked of a model; `None`: it is.
+    pub fn not_asked(&self, model: &Model) -> Option<&'static str> {
+        let among = |names: &[&str]| names.contains(&self.name);
+        if model.timers == Timers::Any && among(&["P1-taken", "P1-live", "P4", "P5", "P7-live", "P7-good", "P8"]) {
+            return Some("it counts exchanges, and timers that may expire in any do not");
+        }
+        if model.stores() && among(&["P1-taken", "P1-live", "P7-live", "P7-good"]) {
+            return Some("the age of a stored image is not followed");
+        }
+        (among(&["P7-order"]) && model.storing == 0)
+            .then_some("without stored SPDUs (--storing) there is no other order")
+    }
 }
 
 /// Every property, in order.
-pub static PROPERTIES: [Property; 14] = [
+pub static PROPERTIES: [Property; 15] = [
     Property {
         name: "P1-taken",
         about: "process data put to use comes from an SPDU younger than one watchdog",
         clause: "11.5.5, Table 27 (unacceptable delay)",
-        side: Side::Both,
+        machines: &Machine::ALL,
         measures: "exchanges since it was built",
         bound: |model| model.watchdog - u8::from(model.timing == Timing::Pipelined),
         tables: None,
@@ -171,7 +174,7 @@ pub static PROPERTIES: [Property; 14] = [
         name: "P1-live",
         about: "process data in use is younger than two watchdogs",
         clause: "11.5.5",
-        side: Side::Both,
+        machines: &Machine::ALL,
         measures: "exchanges since its SPDU was built",
         bound: two_watchdogs,
         tables: None,
@@ -181,7 +184,7 @@ pub static PROPERTIES: [Property; 14] = [
         name: "P2",
         about: "behind a fault the FS-Master sends and gives out SD until it has seen ChFAck_C at 0 and then at 1",
         clause: "11.5.2, Table 38 (T11, T13)",
-        side: Side::Master,
+        machines: &[Machine::Master],
         measures: "early restarts",
         bound: none,
         tables: None,
@@ -191,7 +194,7 @@ pub static PROPERTIES: [Property; 14] = [
         name: "P2d",
         about: "behind a fault or power cycle of the FS-Device its PDout_D is SD until a later acknowledgment",
         clause: "11.5.2, 11.5.3",
-        side: Side::Device,
+        machines: &[Machine::Device],
         measures: "early restarts",
         bound: none,
         tables: None,
@@ -201,7 +204,7 @@ pub static PROPERTIES: [Property; 14] = [
         name: "P3",
         about: "behind start and fault the FS-Device answers three times with SDset and SDout before PDout_D is live",
         clause: "11.5.3, Table 40 (SDcycles)",
-        side: Side::Device,
+        machines: &[Machine::Device],
         measures: "answers short of three",
         bound: none,
         tables: None,
@@ -211,7 +214,7 @@ pub static PROPERTIES: [Property; 14] = [
         name: "P3-master",
         about: "behind a fault the FS-Master sends three SPDUs with SDout",
         clause: "11.4, Table 30",
-        side: Side::Master,
+        machines: &[Machine::Master],
         measures: "SPDUs short of three",
         bound: none,
         tables: Some(
@@ -223,7 +226,7 @@ pub static PROPERTIES: [Property; 14] = [
         name: "P4",
         about: "once a side has found a fault, the other side gives out SD within one watchdog",
         clause: "11.5.5, Tables 38 and 40",
-        side: Side::Both,
+        machines: &Machine::ALL,
         measures: "exchanges from detection to SD",
         bound: |model| model.watchdog,
         tables: None,
@@ -233,7 +236,7 @@ pub static PROPERTIES: [Property; 14] = [
         name: "P5",
         about: "a healthy link and a willing operator bring back operation from everywhere",
         clause: "11.5.2, 11.5.3",
-        side: Side::Both,
+        machines: &Machine::ALL,
         measures: "exchanges to operation",
         bound: |_| u8::MAX,
         tables: None,
@@ -243,7 +246,7 @@ pub static PROPERTIES: [Property; 14] = [
         name: "P6-comm",
         about: "DCommErr is seen in one or two answers behind the latest error",
         clause: "11.5.3, Table 40 (CommErrCount)",
-        side: Side::Device,
+        machines: &[Machine::Device],
         measures: "answers with DCommErr",
         bound: |_| 2,
         tables: None,
@@ -253,7 +256,7 @@ pub static PROPERTIES: [Property; 14] = [
         name: "P6-timeout",
         about: "DTimeout is seen in one or two answers behind the latest timeout",
         clause: "11.5.3, Table 40 (TimeoutCount)",
-        side: Side::Device,
+        machines: &[Machine::Device],
         measures: "answers with DTimeout",
         bound: |_| 2,
         tables: Some("T29 leaves DTimeout as it is in each cycle with an error (Table 40)"),
@@ -263,7 +266,7 @@ pub static PROPERTIES: [Property; 14] = [
         name: "P6-further",
         about: "an error or timeout is seen in at least one further answer",
         clause: "11.5.3, Table 40 (CommErrCount, TimeoutCount)",
-        side: Side::Device,
+        machines: &[Machine::Device],
         measures: "reports withheld",
         bound: none,
         tables: None,
@@ -273,7 +276,7 @@ pub static PROPERTIES: [Property; 14] = [
         name: "P7-live",
         about: "process data is never taken from an answer older than the SPDU it seems to mirror",
         clause: "11.5.2, Table 27 (incorrect sequence)",
-        side: Side::Master,
+        machines: &[Machine::Master],
         measures: "such answers in use",
         bound: none,
         tables: None,
@@ -283,7 +286,7 @@ pub static PROPERTIES: [Property; 14] = [
         name: "P7-good",
         about: "an answer older than the SPDU it seems to mirror never counts as good",
         clause: "11.5.2, Table 27 (incorrect sequence)",
-        side: Side::Master,
+        machines: &[Machine::Master],
         measures: "such answers counted",
         bound: none,
         tables: Some(
@@ -292,10 +295,20 @@ pub static PROPERTIES: [Property; 14] = [
         watch: Some(outdated_good),
     },
     Property {
+        name: "P7-order",
+        about: "process data is never taken from an SPDU presented before another that the FS-Device has processed",
+        clause: "11.5.3, Table 27 (incorrect sequence, unacceptable delay)",
+        machines: &[Machine::Device],
+        measures: "such SPDUs in use",
+        bound: none,
+        tables: None,
+        watch: Some(disordered),
+    },
+    Property {
         name: "P8",
         about: "a demand brings PDout_D to SD within two watchdogs",
         clause: "11.5.5, H.4",
-        side: Side::Both,
+        machines: &Machine::ALL,
         measures: "exchanges with live PDout_D behind the demand",
         bound: two_watchdogs,
         tables: None,
@@ -432,6 +445,18 @@ fn outdated_live(seen: &Seen, _: u16) -> Watched {
 
 fn outdated_good(seen: &Seen, _: u16) -> Watched {
     measure(seen.outdated().into())
+}
+
+/// The monitor says how many exchanges ago the SPDU was presented that the FS-Device has processed last; 0: none since power-on.
+fn disordered(seen: &Seen, monitor: u16) -> Watched {
+    let ago = taken_from_store(&seen.step.device).map_or(0, u16::from);
+    let next = match (seen.powered(), seen.answered(), monitor) {
+        (false, ..) | (true, false, 0) => 0,
+        (true, true, _) => ago + 1,
+        (true, false, monitor) => (monitor + 1).min(31),
+    };
+    let earlier = monitor != 0 && ago > monitor;
+    Watched { monitor: next, fork: None, measure: (earlier && seen.device_took(&[22]) && seen.pdout()).into() }
 }
 
 /// The monitor counts the exchanges since setSD_C is held, from 1 on; 0: not yet.

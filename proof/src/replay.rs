@@ -84,6 +84,7 @@ impl Play<'_> {
             there: given.there,
             status,
             back: given.back,
+            stored: [None; 2],
             device_before,
             device: self.device,
             device_path,
@@ -109,7 +110,8 @@ impl Play<'_> {
         let offered = match given.there {
             Fate::Delivered => Some(Received { control, intact: true }),
             Fate::Bad(mcount) => Some(Received { control: Control { mcount, ..control }, intact: false }),
-            Fate::Lost => None,
+            // A chart with stored images is no case (`fsct prove --emit` refuses them).
+            Fate::Lost | Fate::Stored(_) => None,
         };
         let due = self.device.timer_runs() && self.dtimer + 1 >= self.model.watchdog;
         let mut taken = self.device;
@@ -129,7 +131,7 @@ impl Play<'_> {
             (Fate::Bad(dcount_i), _) => {
                 Some(Answer { status: Status { dcount_i, ..Status::default() }, intact: false })
             }
-            (Fate::Delivered, None) | (Fate::Lost, _) => None,
+            (Fate::Delivered, None) | (Fate::Lost | Fate::Stored(_), _) => None,
         };
         let due = self.master.timer_runs() && self.mtimer + 1 >= self.model.watchdog;
         let mut taken = self.master;

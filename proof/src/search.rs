@@ -14,18 +14,18 @@ struct Key(u64);
 const UNLIMITED: u8 = 15;
 
 impl Key {
-    /// Timers stay below [`crate::Model::WATCHDOGS`] and need four bits each.
+    /// Machines have 18 bits each ([`World::MACHINES`]); timers stay below [`crate::Model::WATCHDOGS`] and have four.
     fn new(joint: Joint, left: u8, monitor: u16) -> Key {
-        let machines = u64::from(joint.master) | u64::from(joint.device) << 16;
+        let machines = u64::from(joint.master) | u64::from(joint.device) << 18;
         let timers = u64::from(joint.mtimer) | u64::from(joint.dtimer) << 4;
-        Key(machines | timers << 32 | u64::from(left) << 40 | u64::from(monitor) << 44)
+        Key(machines | timers << 36 | u64::from(left) << 44 | u64::from(monitor) << 48)
     }
 
     fn open(self) -> (Joint, u8, u16) {
-        let part = |shift: u32| (self.0 >> shift) as u16;
+        let machine = |shift: u32| (self.0 >> shift) as u32 & (World::MACHINES as u32 - 1);
         let four = |shift: u32| (self.0 >> shift) as u8 & 0xF;
-        let joint = Joint { master: part(0), device: part(16), mtimer: four(32), dtimer: four(36) };
-        (joint, four(40), part(44))
+        let joint = Joint { master: machine(0), device: machine(18), mtimer: four(36), dtimer: four(40) };
+        (joint, four(44), (self.0 >> 48) as u16)
     }
 }
 
@@ -70,7 +70,7 @@ pub enum End {
     Complete,
     /// A shortest way beyond the bound, from the start.
     Beyond(Vec<Step>),
-    /// More states than [`crate::Model::most_states`].
+    /// More states than [`crate::Model::most_states`], or more machines than there are numbers for them.
     TooMany,
 }
 
@@ -172,7 +172,12 @@ pub(crate) fn explore(world: &mut World, property: Option<&Property>) -> (Found,
             (layer, depth) = (states.len(), depth + 1);
         }
         let from = states.keys[at];
-        for step in steps_on(world, property, from) {
+        let possible = steps_on(world, property, from);
+        if world.is_full() {
+            end = End::TooMany;
+            break;
+        }
+        for step in possible {
             let Some((measure, keys)) = behind(world, property, from, &step) else { continue };
             steps += 1;
             worst = worst.max(measure);

@@ -166,7 +166,7 @@ proptest! {
                 _ if expired(&step.device.path, [30, 31]) => device.expire(),
                 Fate::Delivered => device.receive(Received { control, intact: true }),
                 Fate::Bad(mcount) => device.receive(Received { control: Control { mcount, ..control }, intact: false }),
-                Fate::Lost => Path::default(),
+                Fate::Lost | Fate::Stored(_) => Path::default(),
             };
             prop_assert_eq!(path, step.device.path);
             prop_assert_eq!((device.state(), image(&device), device.uses_pdout()), (after.state(), image(after), after.uses_pdout()));

@@ -72,6 +72,8 @@ pub enum Way {
     Lost,
     /// It arrives falsified, with these counter bits.
     Bad(u8),
+    /// A stored one arrives in its place, with these counter bits.
+    Stored(u8),
 }
 
 /// A side behind an exchange.
@@ -104,7 +106,7 @@ pub fn ladders(ladders: &[Ladder]) -> String {
             title { (ladders.iter().map(|ladder| short(&ladder.title, TITLE)).collect::<Vec<_>>().join("; ")) }
             desc {
                 "Each row is one exchange: the SPDU goes to the right, the answer to the left. A dashed arrow with a cross was "
-                "falsified, one that ends in the middle was lost. Transitions and the state behind them stand beside the lifelines; "
+                "falsified, one without a cross carries a stored image, one that ends in the middle was lost. Transitions and the state behind them stand beside the lifelines; "
                 "a bar on a lifeline: process data is in use there."
             }
             style { (PreEscaped(PALETTE)) (PreEscaped(STYLE)) }
@@ -179,11 +181,13 @@ fn crossing(text: &str, way: Way, (from, to): (i32, i32), y: i32) -> Markup {
         Way::Arrives => short(text, ON_ARROW),
         Way::Lost => short(&format!("{text} LOST"), ON_ARROW),
         Way::Bad(counter) => short(&format!("{text} BAD({counter})"), ON_ARROW),
+        Way::Stored(counter) => short(&format!("{text} STORED({counter})"), ON_ARROW),
     };
     html! {
         @match way {
             Way::Lost => { path.hit d=(format!("M{from} {y}H{MIDDLE}")) {} (cross(MIDDLE, y)) },
             Way::Bad(_) => { path.hit d=(arrow(from, to, y)) {} (cross(DEVICE - 26, y)) },
+            Way::Stored(_) => path.hit d=(arrow(from, to, y)) {},
             _ => path d=(arrow(from, to, y)) {},
         }
         @if way == Way::Arrives { text x=(LABEL) y=(y - 4) { (label) } }
@@ -227,6 +231,7 @@ mod tests {
     #[case::arrives(Way::Arrives, "4 PDout", 0, 0)]
     #[case::lost(Way::Lost, "4 PDout LOST", 1, 1)]
     #[case::falsified(Way::Bad(5), "4 PDout BAD(5)", 1, 1)]
+    #[case::stored(Way::Stored(1), "4 PDout STORED(1)", 1, 0)]
     #[case::nothing(Way::Nothing, "4 PDout", 0, 0)]
     fn what_becomes_of_an_spdu_is_drawn(
         #[case] way: Way,

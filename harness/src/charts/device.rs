@@ -41,7 +41,7 @@ pub fn steps(turns: &[Turn]) -> Vec<Told> {
         let arrived = match turn.there {
             Fate::Delivered => (turn.control, true),
             Fate::Bad(mcount) => (Control { mcount, ..turn.control }, false),
-            Fate::Lost => continue,
+            Fate::Lost | Fate::Stored(_) => continue,
         };
         if turn.device_path.is_empty() {
             if last != Some(arrived) {

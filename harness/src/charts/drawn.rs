@@ -24,18 +24,20 @@ fn rung(line: &Line) -> Rung {
     let turn = &line.turn;
     let back = match (turn.status, turn.back) {
         (None, Fate::Delivered | Fate::Lost) => Way::Nothing,
-        (_, fate) => way(fate),
+        (_, fate) => way(fate, turn.stored[1]),
     };
     // Nobody is there to take it.
-    let there = if turn.powered() || turn.there != Fate::Delivered { way(turn.there) } else { Way::Lost };
+    let there =
+        if turn.powered() || turn.there != Fate::Delivered { way(turn.there, turn.stored[0]) } else { Way::Lost };
     Rung { spdu: line.sent(), there, answer: line.answered(), back, master: master(turn), device: device(turn) }
 }
 
-fn way(fate: Fate) -> Way {
+fn way(fate: Fate, stored: Option<u8>) -> Way {
     match fate {
         Fate::Delivered => Way::Arrives,
         Fate::Lost => Way::Lost,
         Fate::Bad(counter) => Way::Bad(counter),
+        Fate::Stored(_) => Way::Stored(stored.unwrap_or_default()),
     }
 }
 

@@ -25,7 +25,7 @@ pub fn steps(turns: &[Turn]) -> Vec<Told> {
         let arrived = match (turn.back, turn.status) {
             (Fate::Delivered, Some(status)) => (status, true),
             (Fate::Bad(dcount_i), _) => (Status { dcount_i, ..Status::default() }, false),
-            (Fate::Delivered, None) | (Fate::Lost, _) => continue,
+            (Fate::Delivered, None) | (Fate::Lost | Fate::Stored(_), _) => continue,
         };
         if turn.master_path.is_empty() {
             if last != Some(arrived) {

@@ -5,6 +5,7 @@ use super::{Cases, USAGE, fail, print};
 use crate::library::Library;
 use crate::mapping;
 use crate::oracle::Tolerances;
+use crate::oracle::readings::{HOLDS, REFUSED};
 use crate::problem::suggestion;
 use fsct_iodd::{Reach, Severity};
 use fsct_lines::{Limit, Outside, Row, Subject, Unit};
@@ -109,6 +110,11 @@ fn requirement(library: &Library, id: &str) -> bool {
 fn tolerance(library: &Library, id: &str) -> bool {
     let Some(entry) = Tolerances::number(id).and_then(|number| library.tolerances.get(number)) else { return false };
     print(format!("{id}  {} ({})\n{}", entry.name, entry.stance, entry.text));
+    for row in library.readings.of(entry.number) {
+        let refused = row.refused.as_ref().map_or(String::new(), |why| format!(": {why}"));
+        let verdict = if row.refused.is_none() { HOLDS } else { REFUSED };
+        print(format!("proven for an {}: {} {verdict}{refused}", row.machine, row.reading));
+    }
     true
 }
 

@@ -1,8 +1,13 @@
 //! `fsct prove`: what the tables of the SCL can and cannot do, over everything that a black channel, the power and an operator may do.
 
+mod matrix;
+mod tolerances;
+
 use super::{Cases, RIG, USAGE, fail, print};
 use crate::charts;
-use fsct_proof::{Line, Model, Outcome, PROPERTIES, Property, Reading, Timing, Verdict, prove_all, reachable, text};
+use fsct_proof::{
+    Line, Model, Outcome, PROPERTIES, Property, Reading, Timers, Timing, Verdict, prove_all, reachable, text,
+};
 use fsct_protocol::Edition;
 use fsct_reports::visible;
 use serde_json::{Value, json};
@@ -14,6 +19,27 @@ use std::time::Duration;
 const VIOLATED: u8 = 1;
 /// Exit code when a search had to stop before its end.
 const UNKNOWN: u8 = 5;
+
+/// Options that `--tolerances` and `--matrix` choose themselves.
+const OTHERS: [&str; 17] = [
+    "emit",
+    "svg",
+    "edition",
+    "readings",
+    "master_readings",
+    "device_readings",
+    "mixed",
+    "timing",
+    "timers",
+    "storing",
+    "storing_answers",
+    "faults",
+    "no_power_cycles",
+    "master_restart",
+    "properties",
+    "all",
+    "most_states",
+];
 
 /// Arguments of `fsct prove`.
 #[derive(clap::Args, Debug)]
@@ -28,24 +54,54 @@ pub struct Args {
     /// A reading other than the default, such as A19=sequential; may be given more than once
     #[arg(long = "reading", value_name = "READING")]
     readings: Vec<Reading>,
+    /// A reading of the FS-Master alone; may be given more than once
+    #[arg(long = "master-reading", value_name = "READING")]
+    master_readings: Vec<Reading>,
+    /// A reading of the FS-Device alone; may be given more than once
+    #[arg(long = "device-reading", value_name = "READING")]
+    device_readings: Vec<Reading>,
+    /// In each exchange a machine follows whichever of its readings it likes, or none
+    #[arg(long)]
+    mixed: bool,
     /// FSP_Watchdog in exchanges, 2 to 15
     #[arg(long, default_value_t = 4, value_name = "EXCHANGES")]
     watchdog: u8,
     /// P: an exchange returns the answer made before it; I: the answer comes back in the same exchange
     #[arg(long, default_value = "P")]
     timing: Timing,
+    /// counted: a timer expires after FSP_Watchdog; nd: a running timer may expire in any exchange
+    #[arg(long, default_value = "counted")]
+    timers: Timers,
+    /// The channel stores SPDUs: one presented up to so many exchanges ago, 0 to 15, may reach the FS-Device
+    #[arg(long, default_value_t = 0, value_name = "EXCHANGES")]
+    storing: u8,
+    /// The same for answers on their way to the FS-Master
+    #[arg(long, default_value_t = 0, value_name = "EXCHANGES")]
+    storing_answers: u8,
     /// Most disturbed exchanges: 0 to 14, or unlimited
     #[arg(long, default_value = "unlimited", value_name = "N")]
     faults: Faults,
     /// The FS-Device keeps its power once it has it
     #[arg(long)]
     no_power_cycles: bool,
+    /// The FS-Master may start anew at any time
+    #[arg(long)]
+    master_restart: bool,
     /// A property, or the beginning of its name: P2d, P6; may be given more than once [default: all]
     #[arg(long = "property", value_name = "NAME")]
     properties: Vec<String>,
     /// The default and then every reading by itself; some of them are violated
-    #[arg(long, conflicts_with = "readings")]
+    #[arg(long, conflicts_with_all = ["readings", "master_readings", "device_readings"])]
     all: bool,
+    /// Which readings a product may follow: P1 to P5 for each against every partner that may be met
+    #[arg(long, conflicts_with_all = OTHERS)]
+    tolerances: bool,
+    /// With --tolerances: as testcases/readings.yaml holds them
+    #[arg(long, requires = "tolerances", conflicts_with = "json")]
+    yaml: bool,
+    /// P1 to P5 for many readings, watchdogs of 2 to 6 exchanges and both timings
+    #[arg(long, value_name = "WHICH", conflicts_with_all = OTHERS, conflicts_with_all = ["watchdog", "tolerances"])]
+    matrix: Option<matrix::Which>,
     /// Most states kept for one property; a state takes some 60 octets
     #[arg(long, default_value_t = Model::MOST_STATES, value_name = "N")]
     most_states: usize,
@@ -53,7 +109,7 @@ pub struct Args {
     #[arg(long)]
     json: bool,
     /// Write every chart as a case into this file of cases, for `fsct run FILE`
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = BEYOND)]
     emit: Option<PathBuf>,
     /// Draw every chart into this SVG file
     #[arg(long, value_name = "FILE")]
@@ -61,6 +117,10 @@ pub struct Args {
     #[command(flatten)]
     cases: Cases,
 }
+
+/// Options whose charts are no cases: no DUT is led through what the standard excludes, or through what no one clock does.
+const BEYOND: [&str; 7] =
+    ["storing", "storing_answers", "master_restart", "timers", "mixed", "master_readings", "device_readings"];
 
 /// A number of disturbed exchanges.
 #[derive(Copy, Clone, Debug)]
@@ -82,6 +142,17 @@ type Proven = (Model, usize, Vec<(Outcome, Duration)>);
 
 /// Runs the command; the result is the exit code.
 pub fn run(args: &Args) -> u8 {
+    if let Some(which) = args.matrix {
+        return matrix::run(which, args.json);
+    }
+    if args.tolerances {
+        let form = match (args.json, args.yaml) {
+            (true, _) => tolerances::Form::Json,
+            (false, true) => tolerances::Form::Yaml,
+            (false, false) => tolerances::Form::Text,
+        };
+        return tolerances::run(args.watchdog, form);
+    }
     match prove(args) {
         Ok(proven) => {
             if args.json {
@@ -177,16 +248,23 @@ fn code(outcome: &Outcome) -> u8 {
 }
 
 fn prove(args: &Args) -> Result<Vec<Proven>, String> {
-    let properties = properties(&args.properties)?;
     let model = Model {
         readings: args.readings.clone(),
+        master_readings: args.master_readings.clone(),
+        device_readings: args.device_readings.clone(),
+        mixed: args.mixed,
         watchdog: args.watchdog,
         timing: args.timing,
+        timers: args.timers,
+        storing: args.storing,
+        storing_answers: args.storing_answers,
+        master_restart: args.master_restart,
         faults: args.faults.0,
         power_cycles: !args.no_power_cycles,
         most_states: args.most_states,
         ..Model::new(args.edition)
     };
+    let properties = properties(&args.properties, &model)?;
     let mut models = vec![model.clone()];
     if args.all {
         let each = Reading::ALL.into_iter().map(|reading| Model { readings: vec![reading], ..model.clone() });
@@ -198,7 +276,8 @@ fn prove(args: &Args) -> Result<Vec<Proven>, String> {
     models.into_iter().map(|model| Ok((model.clone(), reachable(&model)?, prove_all(&model, &properties)?))).collect()
 }
 
-fn properties(names: &[String]) -> Result<Vec<&'static Property>, String> {
+/// Those named, or all that can be asked of the model.
+fn properties(names: &[String], model: &Model) -> Result<Vec<&'static Property>, String> {
     let named = |property: &Property, name: &str| {
         property.name.strip_prefix(name).is_some_and(|rest| rest.is_empty() || rest.starts_with('-'))
     };
@@ -206,7 +285,12 @@ fn properties(names: &[String]) -> Result<Vec<&'static Property>, String> {
         let known: Vec<_> = PROPERTIES.iter().map(|property| property.name).collect();
         return Err(format!("`{unknown}` is no property; these are: {}", known.join(", ")));
     }
-    let wanted = |property: &&Property| names.is_empty() || names.iter().any(|name| named(property, name));
+    let wanted = |property: &&Property| {
+        let alone = names.iter().any(|name| name == property.name);
+        alone
+            || property.not_asked(model).is_none()
+                && (names.is_empty() || names.iter().any(|name| named(property, name)))
+    };
     Ok(PROPERTIES.iter().filter(wanted).collect())
 }
 
@@ -260,16 +344,40 @@ fn explain(outcome: &Outcome) {
 }
 
 fn described(model: &Model) -> String {
-    let readings: Vec<_> = model.readings.iter().map(|reading| reading.name()).collect();
+    let readings = readings(model);
     let readings = if readings.is_empty() { "default readings".to_owned() } else { readings.join(", ") };
+    let readings = if model.mixed { format!("any mixture of {readings}") } else { readings };
     let faults = match model.faults {
         None => "any number of disturbed exchanges".to_owned(),
         Some(1) => "1 disturbed exchange at most".to_owned(),
         Some(count) => format!("{count} disturbed exchanges at most"),
     };
     let power = if model.power_cycles { "power cycles of the FS-Device" } else { "no power cycles" };
-    let Model { edition, watchdog, timing, .. } = model;
-    format!("edition {edition}, {readings}, FSP_Watchdog of {watchdog} exchanges, timing {timing}, {faults}, {power}")
+    let Model { edition, watchdog, timing, storing, storing_answers, .. } = model;
+    let mut more = String::new();
+    for (stored, what) in [(*storing, "SPDUs"), (*storing_answers, "answers")] {
+        if stored > 0 {
+            more += &format!(", {what} stored for {stored} exchanges");
+        }
+    }
+    if model.master_restart {
+        more += ", restarts of the FS-Master";
+    }
+    if model.timers == Timers::Any {
+        return format!(
+            "edition {edition}, {readings}, timers that expire at any time, timing {timing}, {faults}, {power}{more}"
+        );
+    }
+    format!(
+        "edition {edition}, {readings}, FSP_Watchdog of {watchdog} exchanges, timing {timing}, {faults}, {power}{more}"
+    )
+}
+
+fn readings(model: &Model) -> Vec<String> {
+    let both = model.readings.iter().map(ToString::to_string);
+    let masters = model.master_readings.iter().map(|reading| format!("FS-Master {reading}"));
+    let devices = model.device_readings.iter().map(|reading| format!("FS-Device {reading}"));
+    both.chain(masters).chain(devices).collect()
 }
 
 fn document((model, states, outcomes): &Proven) -> Value {
@@ -292,11 +400,16 @@ fn document((model, states, outcomes): &Proven) -> Value {
     };
     json!({
         "edition": model.edition.name(),
-        "readings": model.readings.iter().map(|reading| reading.name()).collect::<Vec<_>>(),
+        "readings": readings(model),
+        "mixed": model.mixed,
         "watchdog": model.watchdog,
         "timing": model.timing.to_string(),
+        "timers": model.timers.to_string(),
+        "storing": model.storing,
+        "storing_answers": model.storing_answers,
         "faults": model.faults,
         "power_cycles": model.power_cycles,
+        "master_restart": model.master_restart,
         "states": states,
         "properties": outcomes.iter().map(|(one, _)| outcome(one)).collect::<Vec<_>>(),
     })

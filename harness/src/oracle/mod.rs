@@ -11,6 +11,7 @@ mod explain_device;
 mod explain_master;
 mod master;
 mod ossde;
+pub mod readings;
 mod set;
 mod setup;
 #[cfg(test)]
@@ -21,6 +22,7 @@ pub use device::DeviceOracle;
 pub use explain::Mismatch;
 pub use master::MasterOracle;
 pub use ossde::OssdeOracle;
+pub use readings::Readings;
 pub use setup::{App, Setup};
 pub use tolerance::{Mask, Stance, Tolerance, Tolerances};
 

@@ -1,12 +1,15 @@
 //! Tolerances A01..A38: where the standard is silent or contradicts itself, what is judged and what is let pass.
 //!
-//! The table is data: `testcases/tolerances.yaml`.
+//! The table is data: `testcases/tolerances.yaml`. What it lets pass is held against what was proven ([`super::readings`]).
 
+use super::readings::key;
 use crate::problem::{Problem, Source};
-use crate::tree;
+use crate::tree::{self, Placed};
 use crate::yaml;
+use fsct_proof::Machine;
 use std::collections::BTreeMap;
 use std::fmt;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// What is done with a DUT that follows another reading than the default.
@@ -101,6 +104,10 @@ pub struct Tolerance {
     pub text: String,
     /// What is done.
     pub stance: Stance,
+    /// The readings of the SCL that are let pass or recognised, as `fsct prove --tolerances` calls them.
+    pub readings: Vec<(Machine, Placed)>,
+    /// Where it stands.
+    pub at: Range<usize>,
 }
 
 /// The table.
@@ -122,13 +129,17 @@ impl Tolerances {
             let name = fields.text("name");
             let text = fields.text("text");
             let stance = fields.word("stance", &Stance::ALL);
+            let mut readings = Vec::new();
+            for machine in Machine::ALL {
+                readings.extend(fields.texts(key(machine)).into_iter().map(|placed| (machine, placed)));
+            }
             fields.finish(&mut problems);
             let (Some((id, at)), Some((name, _)), Some((text, _)), Some(stance)) = (id, name, text, stance) else {
                 continue;
             };
             match Tolerances::number(&id) {
                 Some(number) => {
-                    table.insert(number, Tolerance { number, name, text, stance });
+                    table.insert(number, Tolerance { number, name, text, stance, readings, at });
                 }
                 None => problems.push(Problem::new(source, at, format!("`{id}` is no tolerance, A01 to A38 are"))),
             }

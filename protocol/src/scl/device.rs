@@ -92,7 +92,7 @@ pub static ROWS: [Row; 13] = [
         &[
             PDIN_D,
             SDOUT,
-            Set(Var::SetSdDc, 0),
+            If(All(&[Is(Var::SetSdDcKept, 1), Is(Var::SetSdRx, 1)]), &[], &[Set(Var::SetSdDc, 0)]),
             Set(Var::Sdset, 0),
             MIRROR,
             Set(Var::DcommErr, 0),
@@ -160,6 +160,10 @@ pub struct Readings {
     pub jump_ignored: bool,
     /// A19: T29 works off CommErrCount and TimeoutCount in the error cycle too.
     pub sequential: bool,
+    /// A20: T28 leaves setSD_DC alone while setSD is 1.
+    pub set_sd_dc_kept: bool,
+    /// A23: a valid MCount 0 loads SDcycles.
+    pub zero_reloads: bool,
 }
 
 /// One SCL of an FS-Device between two SPDUs.
@@ -179,8 +183,9 @@ impl Device {
         vars.set(Var::SdCycles, 3);
         vars.set(Var::Dtimeout, 1);
         vars.set(Var::SetSdDc, 1);
-        vars.set(Var::Sequential, readings.sequential.into());
-        Device { state: State(20), vars, previous: None, readings }
+        let mut device = Device { state: State(20), vars, previous: None, readings };
+        device.set_readings(readings);
+        device
     }
 
     /// State 24 without a fault, all SD cycles worked off: regular operation in which this MCount was the last.
@@ -233,12 +238,15 @@ impl Device {
             return Path::default();
         }
         let mcount = received.control.mcount;
-        let Readings { last_valid, previous_valid, mirror_valid, .. } = self.readings;
+        let Readings { last_valid, previous_valid, mirror_valid, zero_reloads, .. } = self.readings;
         if valid || !(last_valid || previous_valid) {
             self.previous = Some(mcount);
         }
         if valid || !(last_valid || mirror_valid) {
             self.vars.set(Var::McountInv, inv3(mcount));
+        }
+        if valid && zero_reloads && mcount == 0 {
+            self.vars.set(Var::SdCycles, 3);
         }
         self.vars.set(Var::CommErr, (!valid).into());
         self.vars.set(Var::SetSdRx, received.control.set_sd.into());
@@ -264,6 +272,7 @@ impl Device {
     pub fn set_readings(&mut self, readings: Readings) {
         self.readings = readings;
         self.vars.set(Var::Sequential, readings.sequential.into());
+        self.vars.set(Var::SetSdDcKept, readings.set_sd_dc_kept.into());
     }
 
     /// The readings followed.

@@ -107,9 +107,11 @@ pub enum Var {
     CommErr,
     /// 1: T29 is read with the last two conditions not nested under "no CommErr" (tolerance A19).
     Sequential,
+    /// 1: T28 leaves setSD_DC alone while setSD is 1 (A20).
+    SetSdDcKept,
 }
 
-const VARS: usize = Var::Sequential as usize + 1;
+const VARS: usize = Var::SetSdDcKept as usize + 1;
 
 /// The variables of one machine. All start at 0; the machines set what the tables start otherwise.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Hash)]

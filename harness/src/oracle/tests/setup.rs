@@ -1,7 +1,7 @@
 //! What the oracle is told of bench and product.
 
 use super::*;
-use crate::oracle::{Stance, Tolerances};
+use crate::oracle::{Readings, Stance, Tolerances};
 use crate::problem::Source;
 use fsct_adapters::{Octets, Service};
 use rstest::rstest;
@@ -86,4 +86,24 @@ fn the_table_says_what_is_in_force_and_what_is_shown() {
 #[case("B01", None)]
 fn ids_of_tolerances(#[case] id: &str, #[case] number: Option<u8>) {
     assert_eq!(Tolerances::number(id), number);
+}
+
+/// What a tolerance lets pass is held against what was proven.
+#[rstest]
+#[case("stance: open, device: [A19=one]", &["`A19=one` is no reading of A19 for an FS-Device"])]
+#[case("stance: tolerated, device: [A19=sequential]", &["A19=sequential cannot be tolerated, no product may follow it: P2d fails"])]
+#[case("stance: open, device: [A19=sequential]", &["A19=sequential cannot be open"])]
+#[case("stance: tolerated", &["A19 is tolerated and does not say which of its readings is let pass: device: A19=sequential"])]
+#[case("stance: finding, device: [A19=sequential]", &[])]
+#[case("stance: refused", &[])]
+fn a_reading_that_was_refused_is_not_let_pass(#[case] stance: &str, #[case] expected: &[&str]) {
+    let proven = "- {machine: FS-Device, reading: A19=sequential, verdict: refused, why: P2d fails}".to_owned();
+    let proven = Readings::parse(&source(proven)).expect("it is a table");
+    let tolerances = source(format!("- {{id: A19, name: n, {stance}, text: t}}"));
+    let table = Tolerances::parse(&tolerances).expect("it is a table");
+    let problems = proven.check(&tolerances, &table);
+    assert_eq!(problems.len(), expected.len(), "{problems:?}");
+    for (problem, expected) in problems.iter().zip(expected) {
+        assert!(format!("{problem:?}").contains(expected), "{problem:?}");
+    }
 }
