@@ -10,6 +10,7 @@ pub mod channel;
 pub mod cli;
 pub mod conditions;
 pub mod coverage;
+pub mod dossier;
 pub mod engine;
 pub mod expect;
 pub mod gauntlet;

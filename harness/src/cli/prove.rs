@@ -211,6 +211,8 @@ fn document((model, states, outcomes): &Proven) -> Value {
         })
     };
     json!({
+        "schema": fsct_reports::dossier::PROOF,
+        "fsct": env!("CARGO_PKG_VERSION"),
         "edition": model.edition.name(),
         "readings": model.readings.iter().map(|reading| reading.name()).collect::<Vec<_>>(),
         "watchdog": model.watchdog,
