@@ -158,20 +158,23 @@ mod tests {
 
     #[test]
     fn an_item_without_support_names_its_gap() {
-        let problems = parsed("- {clause: I.1, chapter: product, requirement: R-v11.I.1-01, asks: something}").expect_err("no gap");
+        let problems = parsed("- {clause: I.1, chapter: product, requirement: R-v11.I.1-01, asks: something}")
+            .expect_err("no gap");
         assert!(problems[0].to_string().contains("has to say so under `gaps`"), "{}", problems[0]);
     }
 
     #[test]
     fn an_item_does_not_rest_on_all_items() {
-        let problems = parsed("- {clause: I.1, chapter: product, requirement: R-v11.I.1-01, asks: x, cases: [annex-i]}");
+        let problems =
+            parsed("- {clause: I.1, chapter: product, requirement: R-v11.I.1-01, asks: x, cases: [annex-i]}");
         assert!(problems.expect_err("it is circular")[0].to_string().contains("supports no item"));
     }
 
     #[test]
     fn a_statement_without_an_item_and_an_unknown_suite_are_problems() {
         let library = Library::embedded().expect("the files are sound");
-        let one = parsed("- {clause: I.1, chapter: product, requirement: R-v11.I.1-01, asks: x, cases: [scl-devise]}").expect("sound");
+        let one = parsed("- {clause: I.1, chapter: product, requirement: R-v11.I.1-01, asks: x, cases: [scl-devise]}")
+            .expect("sound");
         let mut problems = Vec::new();
         one.check(["scl-device"].into_iter(), &library.ledger, &mut problems);
         let said: Vec<String> = problems.iter().map(ToString::to_string).collect();

@@ -18,12 +18,12 @@ pub fn tool(library: &Library) -> Tool {
     let evidence = library.annex_i.as_ref().map(|annex| annex.evidence(&library.ledger, |name| library.members(name)));
     let items = evidence.map_or_else(Vec::new, |evidence| evidence.items);
     let reading = |entry: &crate::oracle::Tolerance| {
-        let reading =
-            Reading { name: entry.name.clone(), stance: entry.stance.to_string(), text: entry.text.clone() };
+        let reading = Reading { name: entry.name.clone(), stance: entry.stance.to_string(), text: entry.text.clone() };
         (format!("A{:02}", entry.number), reading)
     };
     let case = |case: &crate::case::Case| KnownCase {
         id: case.id.clone(),
+        suite: case.suite.clone(),
         role: case.role.to_string(),
         requirements: case.requirements.clone(),
     };
@@ -56,12 +56,18 @@ fn answers() -> SelfTest {
         Ok(vectors) => {
             let score = fsct_vectors::prove(&vectors);
             let failed: usize = score.sections.iter().map(|section| section.failed.len()).sum();
-            let outcome = format!("{} of {} known answers proven, tables included", score.answers() - failed, score.answers());
+            let outcome =
+                format!("{} of {} known answers proven, tables included", score.answers() - failed, score.answers());
             (outcome, score.is_proven())
         }
         Err(error) => (error.to_string(), false),
     };
-    SelfTest { what: "Known answers for the signatures".to_owned(), outcome, passed, command: "fsct vectors".to_owned() }
+    SelfTest {
+        what: "Known answers for the signatures".to_owned(),
+        outcome,
+        passed,
+        command: "fsct vectors".to_owned(),
+    }
 }
 
 /// Cases, ledger, limits and profiles agree with each other.
@@ -85,9 +91,10 @@ fn second(library: &Library, role: Role) -> SelfTest {
     let suite = format!("{role}-transitions");
     let command = format!("fsct run {suite} --dut inproc:reference-{role}");
     let (outcome, passed) = match judged(library, role, &suite) {
-        Ok((cases, transitions, wrong)) => {
-            (format!("{cases} cases, {transitions} transitions taken, {wrong} cases not passed"), cases > 0 && wrong == 0)
-        }
+        Ok((cases, transitions, wrong)) => (
+            format!("{cases} cases, {transitions} transitions taken, {wrong} cases not passed"),
+            cases > 0 && wrong == 0,
+        ),
         Err(why) => (why, false),
     };
     SelfTest { what: format!("Oracle against the reference {role}, a second implementation"), outcome, passed, command }
@@ -108,7 +115,15 @@ fn judged(library: &Library, role: Role, suite: &str) -> Result<(usize, usize, u
     let plan = plan(library, &selection, profile, &first.description).map_err(|problem| problem.to_string())?;
     let allowed = library.tolerances.in_force();
     let interrupted = AtomicBool::new(false);
-    let run = Run { library, profile, allowed, seed: 1, command: String::new(), interrupted: &interrupted, judges: Judges::default() };
+    let run = Run {
+        library,
+        profile,
+        allowed,
+        seed: 1,
+        command: String::new(),
+        interrupted: &interrupted,
+        judges: Judges::default(),
+    };
     let (mut cases, mut wrong, mut taken) = (0, 0, BTreeSet::new());
     let Ok(()) = run.execute(&plan, Ok(first), connect, |case| {
         cases += 1;

@@ -48,8 +48,11 @@ fn execute(args: &Args) -> Result<u8, u8> {
     let dossier = Dossier::assemble(&tool, sources, role.as_deref(), args.date.clone());
     let dossier = dossier.map_err(|error| fail(USAGE, error))?;
     let out = args.out.display();
-    std::fs::write(&args.out, render(&dossier)).map_err(|error| fail(RIG, format!("{out} cannot be written: {error}")))?;
+    std::fs::write(&args.out, render(&dossier))
+        .map_err(|error| fail(RIG, format!("{out} cannot be written: {error}")))?;
     print(fsct_reports::visible(&dossier.told()));
-    print(format!("dossier: {out}; to print it: chromium --headless --no-pdf-header-footer --print-to-pdf=FILE.pdf {out}"));
+    print(format!(
+        "dossier: {out}; to print it: chromium --headless --no-pdf-header-footer --print-to-pdf=FILE.pdf {out}"
+    ));
     Ok(0)
 }

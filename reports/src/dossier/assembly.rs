@@ -52,13 +52,17 @@ pub enum AssemblyError {
     #[error("none of these records is one of `fsct run`; a dossier begins with `fsct run --dut URL --out DIR`")]
     NoRun,
     /// No DUT told what it is.
-    #[error("no record{role} is of a DUT that was reached, so nothing names the product; run it again with `fsct run --dut URL --out DIR`")]
+    #[error(
+        "no record{role} is of a DUT that was reached, so nothing names the product; run it again with `fsct run --dut URL --out DIR`"
+    )]
     Nobody {
         /// ` of a device`, when that was asked for.
         role: String,
     },
     /// Both sides of a link.
-    #[error("these records are about {products}; a dossier is about one product: add `--role device` or `--role master`")]
+    #[error(
+        "these records are about {products}; a dossier is about one product: add `--role device` or `--role master`"
+    )]
     Roles {
         /// What they call themselves.
         products: String,
@@ -123,8 +127,14 @@ impl<'t> Dossier<'t> {
     }
 
     /// Pieces of one kind about the product or about no product, with the number of their record, from 1.
-    pub fn pieces<'d, T: 'd>(&'d self, of: impl Fn(&'d Piece) -> Option<&'d T> + 'd) -> impl Iterator<Item = (usize, &'d T)> {
-        (1..).zip(&self.sources).filter(|(_, source)| self.concerns(source)).filter_map(move |(number, source)| Some((number, of(&source.piece)?)))
+    pub fn pieces<'d, T: 'd>(
+        &'d self,
+        of: impl Fn(&'d Piece) -> Option<&'d T> + 'd,
+    ) -> impl Iterator<Item = (usize, &'d T)> {
+        (1..)
+            .zip(&self.sources)
+            .filter(|(_, source)| self.concerns(source))
+            .filter_map(move |(number, source)| Some((number, of(&source.piece)?)))
     }
 
     /// Whether a record is about the product, or about no product at all.
@@ -239,6 +249,11 @@ fn together(tool: &Tool, sources: &[Source], product: &Identity) -> (Run, Vec<Se
 /// An offer begins with its edition.
 fn editions(run: &Run) -> BTreeSet<String> {
     let ran = run.cases.iter().map(|case| case.variant.edition.clone());
-    let offered = run.header.duts.iter().flat_map(|dut| &dut.offers).filter_map(|offer| Some(offer.split(' ').next()?.to_owned()));
+    let offered = run
+        .header
+        .duts
+        .iter()
+        .flat_map(|dut| &dut.offers)
+        .filter_map(|offer| Some(offer.split(' ').next()?.to_owned()));
     ran.chain(offered).filter(|edition| ["v1.1", "iec2022"].contains(&edition.as_str())).collect()
 }

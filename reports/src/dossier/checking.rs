@@ -47,15 +47,28 @@ pub fn section(dossier: &Dossier<'_>) -> Section {
 
 fn gap_of(one: &Asked, proof: &Proof) -> Option<Gap> {
     let (name, edition) = (short(&one.property, NAME), short(&proof.edition, NAME));
-    let with = if proof.readings.is_empty() { String::new() } else { format!(" read as {}", short(&proof.readings.join(", "), NAME)) };
+    let with = if proof.readings.is_empty() {
+        String::new()
+    } else {
+        format!(" read as {}", short(&proof.readings.join(", "), NAME))
+    };
     match one.verdict.as_str() {
         "holds" => None,
         "tables" => Some(Gap::new(
             Kind::Reading,
-            format!("{name} goes beyond its bound by the tables of the standard themselves ({edition}{with}): {}", short(one.tables.as_deref().unwrap_or_default(), TEXT)),
+            format!(
+                "{name} goes beyond its bound by the tables of the standard themselves ({edition}{with}): {}",
+                short(one.tables.as_deref().unwrap_or_default(), TEXT)
+            ),
         )),
-        "unknown" => Some(Gap::closed_by(Kind::Inconclusive, format!("{name} is not known ({edition}{with}): the search had to stop"), "fsct prove --most-states N --json")),
-        verdict => Some(Gap::new(Kind::Failure, format!("{name} is {} in the model ({edition}{with})", short(verdict, NAME)))),
+        "unknown" => Some(Gap::closed_by(
+            Kind::Inconclusive,
+            format!("{name} is not known ({edition}{with}): the search had to stop"),
+            "fsct prove --most-states N --json",
+        )),
+        verdict => {
+            Some(Gap::new(Kind::Failure, format!("{name} is {} in the model ({edition}{with})", short(verdict, NAME))))
+        }
     }
 }
 
@@ -71,7 +84,8 @@ fn signed(verdict: &str) -> String {
 }
 
 fn explored(source: usize, proof: &Proof) -> Markup {
-    let readings = if proof.readings.is_empty() { "default readings".to_owned() } else { short(&proof.readings.join(", "), NAME) };
+    let readings =
+        if proof.readings.is_empty() { "default readings".to_owned() } else { short(&proof.readings.join(", "), NAME) };
     html! {
         h3 { "Edition " (short(&proof.edition, NAME)) ", " (readings) " " (cite(source)) }
         p {

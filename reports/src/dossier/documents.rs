@@ -13,7 +13,11 @@ pub fn section(dossier: &Dossier<'_>) -> Section {
             && !run.partial.is_empty()
             && dossier.concerns(source)
         {
-            gaps.push(Gap::closed_by(Kind::Inconclusive, format!("Record [{number}] is not whole: {}", short(&run.partial, NAME)), "fsct run --dut URL --out DIR"));
+            gaps.push(Gap::closed_by(
+                Kind::Inconclusive,
+                format!("Record [{number}] is not whole: {}", short(&run.partial, NAME)),
+                "fsct run --dut URL --out DIR",
+            ));
         }
     }
     let body = html! {

@@ -1,8 +1,8 @@
 //! What the records do not show, by kind, each with the command that closes it where there is one.
 
+use super::Dossier;
 use super::gap::{Gap, Kind};
 use super::page::{NAME, TEXT};
-use super::Dossier;
 use crate::html::word;
 use crate::record::CaseRecord;
 use crate::text::short;
@@ -19,7 +19,9 @@ pub fn body(dossier: &Dossier<'_>, gaps: &[&Gap]) -> Markup {
             @let cases = cases(dossier, kind);
             @if !own.is_empty() || !cases.is_empty() {
                 h3 { (kind.title()) }
-                @if !own.is_empty() {
+                @if own.iter().all(|gap| gap.command.is_empty()) {
+                    ul { @for gap in own { li { (short(&gap.what, 3 * TEXT)) } } }
+                } @else {
                     table.gaps {
                         thead { tr { th scope="col" { "Gap" } th scope="col" { "What closes it" } } }
                         @for gap in own { tr { td { (short(&gap.what, 3 * TEXT)) } td { @if gap.command.is_empty() { "–" } @else { code { (short(&gap.command, TEXT)) } } } } }

@@ -14,9 +14,12 @@ const FOUND: usize = 8;
 
 pub fn section(dossier: &Dossier<'_>) -> Section {
     let mut gaps = Vec::new();
-    let bits: Vec<(usize, &Bits)> = dossier.pieces(|piece| if let Piece::Bits(one) = piece { Some(one) } else { None }).collect();
-    let random: Vec<(usize, &Random)> = dossier.pieces(|piece| if let Piece::Random(one) = piece { Some(one) } else { None }).collect();
-    let records: Vec<(usize, &Records)> = dossier.pieces(|piece| if let Piece::Records(one) = piece { Some(one) } else { None }).collect();
+    let bits: Vec<(usize, &Bits)> =
+        dossier.pieces(|piece| if let Piece::Bits(one) = piece { Some(one) } else { None }).collect();
+    let random: Vec<(usize, &Random)> =
+        dossier.pieces(|piece| if let Piece::Random(one) = piece { Some(one) } else { None }).collect();
+    let records: Vec<(usize, &Records)> =
+        dossier.pieces(|piece| if let Piece::Records(one) = piece { Some(one) } else { None }).collect();
     let mut missing = |is: bool, what: &str, command: &str| {
         let (markup, gap) = absent(what, command);
         if is {
@@ -25,10 +28,26 @@ pub fn section(dossier: &Dossier<'_>) -> Section {
         html! { @if is { (markup) } }
     };
     let device = dossier.product.role == "device";
-    let no_matrix = missing(dossier.run.header.matrix.is_empty(), "the error matrix, every error class of Table 27 in every waiting state", "fsct run error-matrix --dut URL --out DIR");
-    let no_random = missing(random.is_empty(), "a campaign of random faults of all classes", "fsct campaign random --dut URL --out DIR");
-    let no_bits = missing(bits.is_empty(), "a campaign of every corruption of so many bits", "fsct campaign bits --dut URL --out DIR");
-    let no_records = missing(device && records.is_empty(), "a campaign on FSP_VerifyRecord", "fsct campaign record --dut URL --out DIR");
+    let no_matrix = missing(
+        dossier.run.header.matrix.is_empty(),
+        "the error matrix, every error class of Table 27 in every waiting state",
+        "fsct run error-matrix --dut URL --out DIR",
+    );
+    let no_random = missing(
+        random.is_empty(),
+        "a campaign of random faults of all classes",
+        "fsct campaign random --dut URL --out DIR",
+    );
+    let no_bits = missing(
+        bits.is_empty(),
+        "a campaign of every corruption of so many bits",
+        "fsct campaign bits --dut URL --out DIR",
+    );
+    let no_records = missing(
+        device && records.is_empty(),
+        "a campaign on FSP_VerifyRecord",
+        "fsct campaign record --dut URL --out DIR",
+    );
     bits.iter().for_each(|(source, one)| gaps.extend(gaps_of_bits(*source, one)));
     random.iter().for_each(|(source, one)| gaps.extend(gaps_of_random(*source, one)));
     records.iter().for_each(|(source, one)| gaps.extend(gaps_of_records(*source, one)));
@@ -60,13 +79,23 @@ pub fn section(dossier: &Dossier<'_>) -> Section {
 fn gaps_of_bits(source: usize, one: &Bits) -> Vec<Gap> {
     let mut gaps = Vec::new();
     if !one.undetected.is_empty() {
-        gaps.push(Gap::new(Kind::Failure, format!("{} corrupted SPDUs were not detected, record [{source}]", one.undetected.len())));
+        gaps.push(Gap::new(
+            Kind::Failure,
+            format!("{} corrupted SPDUs were not detected, record [{source}]", one.undetected.len()),
+        ));
     }
     if one.rows.iter().any(|row| !row.complete) {
-        gaps.push(Gap::closed_by(Kind::Inconclusive, format!("The campaign of record [{source}] did not try all corruptions it began with"), "fsct campaign bits --dut URL --out DIR"));
+        gaps.push(Gap::closed_by(
+            Kind::Inconclusive,
+            format!("The campaign of record [{source}] did not try all corruptions it began with"),
+            "fsct campaign bits --dut URL --out DIR",
+        ));
     }
     if one.had_to_be_detected == 0 {
-        gaps.push(Gap::new(Kind::Inconclusive, format!("The campaign of record [{source}] brought nothing in that has to be detected")));
+        gaps.push(Gap::new(
+            Kind::Inconclusive,
+            format!("The campaign of record [{source}] brought nothing in that has to be detected"),
+        ));
     }
     gaps
 }
@@ -74,12 +103,22 @@ fn gaps_of_bits(source: usize, one: &Bits) -> Vec<Gap> {
 fn gaps_of_random(source: usize, one: &Random) -> Vec<Gap> {
     let mut gaps = Vec::new();
     if one.undetected > 0 {
-        gaps.push(Gap::new(Kind::Failure, format!("A fault of the random campaign was not dealt with as the tables ask, record [{source}]")));
+        gaps.push(Gap::new(
+            Kind::Failure,
+            format!("A fault of the random campaign was not dealt with as the tables ask, record [{source}]"),
+        ));
     } else if !one.complete {
-        gaps.push(Gap::closed_by(Kind::Inconclusive, format!("The random campaign of record [{source}] did not come to its end"), "fsct campaign random --dut URL --out DIR"));
+        gaps.push(Gap::closed_by(
+            Kind::Inconclusive,
+            format!("The random campaign of record [{source}] did not come to its end"),
+            "fsct campaign random --dut URL --out DIR",
+        ));
     }
     if one.had_to_be_detected == 0 {
-        gaps.push(Gap::new(Kind::Inconclusive, format!("The campaign of record [{source}] brought nothing in that has to be detected")));
+        gaps.push(Gap::new(
+            Kind::Inconclusive,
+            format!("The campaign of record [{source}] brought nothing in that has to be detected"),
+        ));
     }
     gaps
 }
@@ -88,9 +127,16 @@ fn gaps_of_records(source: usize, one: &Records) -> Vec<Gap> {
     let started = one.rows.iter().filter(|row| row.failed.is_some()).count();
     let mut gaps = Vec::new();
     if started > 0 {
-        gaps.push(Gap::new(Kind::Failure, format!("A falsified FSP_VerifyRecord started the safety communication layer, record [{source}]")));
+        gaps.push(Gap::new(
+            Kind::Failure,
+            format!("A falsified FSP_VerifyRecord started the safety communication layer, record [{source}]"),
+        ));
     } else if !one.complete || one.rows.iter().all(|row| row.records == 0) {
-        gaps.push(Gap::closed_by(Kind::Inconclusive, format!("The campaign on FSP_VerifyRecord of record [{source}] did not come to its end"), "fsct campaign record --dut URL --out DIR"));
+        gaps.push(Gap::closed_by(
+            Kind::Inconclusive,
+            format!("The campaign on FSP_VerifyRecord of record [{source}] did not come to its end"),
+            "fsct campaign record --dut URL --out DIR",
+        ));
     }
     gaps
 }

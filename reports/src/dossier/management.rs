@@ -8,7 +8,8 @@ use maud::{Markup, html};
 
 pub fn section(dossier: &Dossier<'_>) -> Section {
     let assumptions = assumptions(dossier);
-    let mut gaps: Vec<Gap> = assumptions.iter().map(|one| Gap::new(Kind::Elsewhere, format!("{}: {}", one.what, one.gap))).collect();
+    let mut gaps: Vec<Gap> =
+        assumptions.iter().map(|one| Gap::new(Kind::Elsewhere, format!("{}: {}", one.what, one.gap))).collect();
     for (id, count) in &dossier.summary.tolerances {
         let name = dossier.tool.readings.get(id).map_or("", |reading| reading.name.as_str());
         gaps.push(Gap::closed_by(
@@ -40,7 +41,10 @@ struct Assumption {
 }
 
 fn assumptions(dossier: &Dossier<'_>) -> Vec<Assumption> {
-    let residual: Vec<usize> = dossier.pieces(|piece| if let Piece::Residual(one) = piece { Some(one) } else { None }).map(|(number, _)| number).collect();
+    let residual: Vec<usize> = dossier
+        .pieces(|piece| if let Piece::Residual(one) = piece { Some(one) } else { None })
+        .map(|(number, _)| number)
+        .collect();
     let computed = |what: &str| {
         html! {
             @if residual.is_empty() { "nothing: no computation of residual error is in these records" }
@@ -63,7 +67,11 @@ fn assumptions(dossier: &Dossier<'_>) -> Vec<Assumption> {
         Assumption {
             what: "No storing element between FS-Master and FS-Device",
             clause: "11.4.8",
-            support: cases_about(dossier, "repeated, late and old SPDUs", &["insertion", "repetition", "delay", "stor"]),
+            support: cases_about(
+                dossier,
+                "repeated, late and old SPDUs",
+                &["insertion", "repetition", "delay", "stor"],
+            ),
             gap: "Repeated and late SPDUs are detected within the counter alone; that nothing on the line keeps and delivers them is a matter of installation and of the safety manual",
         },
         Assumption {
@@ -119,7 +127,7 @@ fn readings(dossier: &Dossier<'_>) -> Markup {
         }
         h3 { "Readings in force" }
         @if in_force.is_empty() { p { "None." } } @else {
-            table {
+            table.readings {
                 thead { tr { th scope="col" { "Reading" } th scope="col" { "Stance" } th scope="col" { "What is judged by, and what is let pass" } } }
                 @for (id, text) in in_force {
                     @let known = dossier.tool.readings.get(id);

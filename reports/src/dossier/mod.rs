@@ -58,7 +58,11 @@ pub const CHAPTERS: [Chapter; 9] = [
     Chapter { key: "modelling", title: "Modelling of the safety communication layer", section: modelling::section },
     Chapter { key: "checking", title: "Model checking", section: checking::section },
     Chapter { key: "injection", title: "Simulation with fault injection", section: injection::section },
-    Chapter { key: "management", title: "Safety considerations: management, assumptions, readings", section: management::section },
+    Chapter {
+        key: "management",
+        title: "Safety considerations: management, assumptions, readings",
+        section: management::section,
+    },
     Chapter { key: "residual", title: "Safety considerations: residual error rates", section: residual::section },
     Chapter { key: "tools", title: "Safety considerations: tool chain", section: tools::section },
     Chapter { key: "documents", title: "Documents and records", section: documents::section },

@@ -39,7 +39,13 @@ fn machine_of(machine: Machine, dossier: &Dossier<'_>, gaps: &mut Vec<Gap>) -> M
     let names = machine.transitions();
     let never: Vec<&str> = names.iter().filter(|name| count(name).unwrap_or(0) == 0).map(String::as_str).collect();
     if !never.is_empty() {
-        let what = format!("{} of {} transitions of the {} were never taken: {}", never.len(), names.len(), machine.title(), never.join(", "));
+        let what = format!(
+            "{} of {} transitions of the {} were never taken: {}",
+            never.len(),
+            names.len(),
+            machine.title(),
+            never.join(", ")
+        );
         gaps.push(Gap::closed_by(Kind::NotRun, what, TOURS));
     }
     let reached = dossier.summary.coverage.iter().find(|one| machine.walks(&one.role));
@@ -59,17 +65,27 @@ fn sequences(reached: &Coverage, dossier: &Dossier<'_>, gaps: &mut Vec<Gap>) -> 
     let kinds = reached.kinds();
     for (kind, one) in kinds {
         if !one.missing.is_empty() {
-            let what = format!("{} of {} {kind} that can be walked were not: {}", one.missing.len(), one.feasible, listed(&one.missing));
+            let what = format!(
+                "{} of {} {kind} that can be walked were not: {}",
+                one.missing.len(),
+                one.feasible,
+                listed(&one.missing)
+            );
             gaps.push(Gap::closed_by(Kind::NotRun, what, TOURS));
         }
         for (name, said) in one.contradicting.iter().take(LISTED) {
-            let what = format!("`{}` of the {kind} was taken although it cannot be, {}", short(name, NAME), short(said, 2 * NAME));
+            let what = format!(
+                "`{}` of the {kind} was taken although it cannot be, {}",
+                short(name, NAME),
+                short(said, 2 * NAME)
+            );
             gaps.push(Gap::new(Kind::Inconclusive, what));
         }
     }
     for (kind, one) in reached.asked.iter().flat_map(|asked| asked.kinds()) {
         if !one.missing.is_empty() {
-            let what = format!("{} sides of {kind} were not seen to decide: {}", one.missing.len(), listed(&one.missing));
+            let what =
+                format!("{} sides of {kind} were not seen to decide: {}", one.missing.len(), listed(&one.missing));
             gaps.push(Gap::closed_by(Kind::NotRun, what, TOURS));
         }
     }

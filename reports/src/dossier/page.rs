@@ -90,13 +90,20 @@ fn asked(dossier: &Dossier<'_>, key: &str) -> Markup {
         @for item in items(dossier, key) {
             div.asks {
                 p { b { "Annex " (short(&item.clause, NAME)) } " (v1.1): " (short(&item.asks, TEXT)) "." }
-                @if !item.cases.is_empty() {
-                    p { "Cases: " @for (place, (name, _)) in item.cases.iter().enumerate() { @if place > 0 { "; " } (cases(dossier, name)) } "." }
+                @let own: Vec<&str> = item.cases.iter().map(|(name, _)| name.as_str()).filter(|name| for_role(dossier, name)).collect();
+                @if !own.is_empty() {
+                    p { "Cases: " @for (place, name) in own.iter().enumerate() { @if place > 0 { "; " } (cases(dossier, name)) } "." }
                 }
                 @for (path, says) in &item.documents { p { "Document " code { (short(path, NAME)) } ": " (short(says, TEXT)) "." } }
             }
         }
     }
+}
+
+/// Whether a suite or group holds a case for the role of the product.
+fn for_role(dossier: &Dossier<'_>, name: &str) -> bool {
+    let suites = dossier.tool.members.get(name).map_or(&[][..], Vec::as_slice);
+    dossier.tool.cases.iter().any(|case| case.role == dossier.product.role && suites.contains(&case.suite))
 }
 
 /// A suite or group with what its cases came to in these records.

@@ -34,7 +34,10 @@ pub fn section(dossier: &Dossier<'_>) -> Section {
     for (number, dut) in (1..).zip(duts).filter(|(_, dut)| dut.clock == "recorded") {
         gaps.push(Gap::new(
             Kind::Elsewhere,
-            format!("DUT {number} is a recording ({}); that it was taken from this product is the word of whoever took it", short(&dut.url, NAME)),
+            format!(
+                "DUT {number} is a recording ({}); that it was taken from this product is the word of whoever took it",
+                short(&dut.url, NAME)
+            ),
         ));
     }
     if duts.iter().all(|dut| dut.url.starts_with("inproc:")) {

@@ -5,6 +5,7 @@ use super::page::{NAME, absent, cite};
 use super::{Dossier, Gap, Kind, Piece, Section};
 use crate::plot::{Bound, Curve, Plot, plots};
 use crate::text::short;
+use fsct_protocol::ProtMode;
 use maud::{Markup, html};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -14,24 +15,37 @@ const COMMAND: &str = "fsct crc --residual --json > DIR/residual.json";
 const LENGTHS: usize = 64;
 
 pub fn section(dossier: &Dossier<'_>) -> Section {
-    let found: Vec<(usize, &Residual)> = dossier.pieces(|piece| if let Piece::Residual(one) = piece { Some(one) } else { None }).collect();
+    let found: Vec<(usize, &Residual)> =
+        dossier.pieces(|piece| if let Piece::Residual(one) = piece { Some(one) } else { None }).collect();
     let mut gaps = Vec::new();
     let (nothing, gap) = absent("the residual error of the signatures", COMMAND);
     if found.is_empty() {
         gaps.push(gap);
     }
-    for (mode, octets) in used(dossier).into_iter().filter(|_| !found.is_empty()) {
-        let width = if mode == "crc16" { 16 } else { 32 };
-        let there = found.iter().flat_map(|(_, one)| &one.codes).any(|code| code.width == width && code.lengths.iter().any(|one| one.octets == octets));
-        if !there {
-            gaps.push(Gap::closed_by(Kind::NotRun, format!("The product was run with {mode} and SPDUs of {octets} octets, for which no residual error is in these records"), COMMAND));
+    for mode in [ProtMode::Crc16, ProtMode::Crc32].into_iter().filter(|_| !found.is_empty()) {
+        let there = |octets: u64| {
+            let mut codes = found.iter().flat_map(|(_, one)| &one.codes);
+            codes.any(|code| mode_of(code) == Some(mode) && code.lengths.iter().any(|one| one.octets == octets))
+        };
+        let lacking: Vec<String> = used(dossier)
+            .into_iter()
+            .filter(|(used, octets)| *used == mode && !there(*octets))
+            .map(|(_, octets)| octets.to_string())
+            .collect();
+        if !lacking.is_empty() {
+            let lacking = lacking.join(", ");
+            gaps.push(Gap::closed_by(
+                Kind::NotRun,
+                format!("The product was run with {mode} and SPDUs of {lacking} octets, for which no residual error is in these records"),
+                format!("fsct crc --residual --mode {mode} --json > DIR/residual.json"),
+            ));
         }
     }
     gaps.extend(found.iter().flat_map(|(_, one)| &one.codes).flat_map(broken));
     let body = html! {
         p {
             "The probability Rp that errors turn an SPDU into another one that is accepted, from the exact number of code words of each weight. "
-            "Lengths are those of the word with its signature; ■ marks those the product was run with."
+            "Lengths are those of the word with its signature; ■ marks those the product was run with. Words longer than an SPDU can be are parameter blocks; hourly figures are for SPDUs."
         }
         @if found.is_empty() { (nothing) }
         @for (source, one) in &found { (rates(*source, one, &used(dossier))) }
@@ -40,21 +54,31 @@ pub fn section(dossier: &Dossier<'_>) -> Section {
 }
 
 /// Mode and length of every SPDU the cases of the product used, both ways.
-fn used(dossier: &Dossier<'_>) -> BTreeSet<(String, u64)> {
-    let lengths = dossier.run.cases.iter().flat_map(|case| {
-        let code = if case.variant.mode == "crc16" { 3 } else { 5 };
-        [case.variant.pd_out, case.variant.pd_in].map(|octets| (case.variant.mode.clone(), u64::from(octets) + code))
+fn used(dossier: &Dossier<'_>) -> BTreeSet<(ProtMode, u64)> {
+    let lengths = dossier.run.cases.iter().filter_map(|case| {
+        let mode: ProtMode = case.variant.mode.parse().ok()?;
+        Some([case.variant.pd_out, case.variant.pd_in].map(|octets| (mode, mode.spdu_octets(octets.into()) as u64)))
     });
-    lengths.collect()
+    lengths.flatten().collect()
+}
+
+/// The mode that a code serves.
+fn mode_of(code: &Code) -> Option<ProtMode> {
+    [ProtMode::Crc16, ProtMode::Crc32].into_iter().find(|mode| 8 * mode.signature_octets() == code.width as usize)
 }
 
 /// What Annex D states and is not so: a remark on the standard.
 fn broken(code: &Code) -> Vec<Gap> {
     let of = |pick: fn(&super::document::Verdicts) -> &String| {
-        let lengths = code.lengths.iter().filter(|one| one.verdicts.as_ref().is_some_and(|verdicts| pick(verdicts) == BROKEN));
+        let lengths =
+            code.lengths.iter().filter(|one| one.verdicts.as_ref().is_some_and(|verdicts| pick(verdicts) == BROKEN));
         lengths.map(|one| one.octets.to_string()).collect::<Vec<_>>()
     };
-    let said = [("the Hamming distance", of(|one| &one.distance)), ("the bound on Rp", of(|one| &one.residual)), ("properness", of(|one| &one.proper))];
+    let said = [
+        ("the Hamming distance", of(|one| &one.distance)),
+        ("the bound on Rp", of(|one| &one.residual)),
+        ("properness", of(|one| &one.proper)),
+    ];
     let said = said.into_iter().filter(|(_, lengths)| !lengths.is_empty());
     said.map(|(what, lengths)| {
         let lengths = lengths.join(", ");
@@ -66,7 +90,7 @@ fn broken(code: &Code) -> Vec<Gap> {
 /// How `fsct crc --residual` names a statement that is not true.
 const BROKEN: &str = "stated, but false";
 
-fn rates(source: usize, one: &Residual, used: &BTreeSet<(String, u64)>) -> Markup {
+fn rates(source: usize, one: &Residual, used: &BTreeSet<(ProtMode, u64)>) -> Markup {
     let assumed = &one.assumed;
     html! {
         p {
@@ -75,7 +99,7 @@ fn rates(source: usize, one: &Residual, used: &BTreeSet<(String, u64)>) -> Marku
         }
         @for code in &one.codes {
             h3 { "CRC-" (code.width) ", polynomial " (short(&code.polynomial, NAME)) }
-            table {
+            table.residual {
                 thead {
                     tr {
                         th.number scope="col" { "Octets" } th.number scope="col" { "Distance" } th.number scope="col" { "Rp at " (small(assumed.bit_error_probability)) }
@@ -90,11 +114,10 @@ fn rates(source: usize, one: &Residual, used: &BTreeSet<(String, u64)>) -> Marku
     }
 }
 
-fn row(length: &Length, code: &Code, one: &Residual, used: &BTreeSet<(String, u64)>) -> Markup {
+fn row(length: &Length, code: &Code, one: &Residual, used: &BTreeSet<(ProtMode, u64)>) -> Markup {
     let at = one.assumed.bit_error_probability;
     let rp = length.residual.iter().find(|(p, _)| (p - at).abs() < at * 1e-9).map(|(_, rp)| *rp);
-    let mode = if code.width == 16 { "crc16" } else { "crc32" };
-    let used = used.contains(&(mode.to_owned(), length.octets));
+    let used = mode_of(code).is_some_and(|mode| used.contains(&(mode, length.octets)));
     let share = length.monitored_per_hour / one.assumed.share_per_hour * 100.0;
     html! {
         tr {
@@ -120,7 +143,12 @@ fn drawn(code: &Code) -> Markup {
         level: stated.residual.below,
         upto: 1e-2,
     });
-    let curve = |one: &Length| Curve { number: one.octets.to_string(), about: format!("{} octets", one.octets), points: one.residual.clone(), mark: None };
+    let curve = |one: &Length| Curve {
+        number: one.octets.to_string(),
+        about: format!("{} octets", one.octets),
+        points: one.residual.clone(),
+        mark: None,
+    };
     let plot = Plot {
         title: format!("CRC-{}: residual error probability", code.width),
         axes: ("bit error probability".to_owned(), "Rp; a number is the octets of a word".to_owned()),
@@ -138,7 +166,9 @@ fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len() * 3 / 2);
     for octet in text.bytes() {
         match octet {
-            b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'.' | b'_' | b'/' | b':' | b'=' | b' ' => out.push(octet.into()),
+            b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'.' | b'_' | b'/' | b':' | b'=' | b' ' => {
+                out.push(octet.into())
+            }
             _ => drop(write!(out, "%{octet:02X}")),
         }
     }

@@ -199,7 +199,8 @@ fn document(path: &Path, sha256: String) -> Result<Source, SourceError> {
     let mut text = String::new();
     File::open(path).and_then(|file| file.take(MAX_DOCUMENT).read_to_string(&mut text)).map_err(failed)?;
     let wrong = |what: String| SourceError::Document { path: path.display().to_string(), what, command: made_by(path) };
-    let value: Value = serde_json::from_str(&text).map_err(|error| wrong(format!("it is no whole JSON document ({error})")))?;
+    let value: Value =
+        serde_json::from_str(&text).map_err(|error| wrong(format!("it is no whole JSON document ({error})")))?;
     let first = value.get(0).unwrap_or(&value);
     let schema = first.get("schema").and_then(Value::as_str).unwrap_or_default().to_owned();
     let read = match schema.as_str() {

@@ -15,9 +15,25 @@ pub fn section(dossier: &Dossier<'_>) -> Section {
         (State::Failed, Kind::Failure, "statements are judged by a case that failed", ""),
         (State::NotExecuted, Kind::Inconclusive, "statements are judged by a case that was not executed as meant", ""),
         (State::Inconclusive, Kind::Inconclusive, "statements are judged by a case that stayed inconclusive", ""),
-        (State::NotRun, Kind::NotRun, "statements have cases that are not in these records", "fsct run annex-i --dut URL --out DIR"),
-        (State::Iodd, Kind::NotRun, "statements are about the IODD, which a command of its own judges", "fsct iodd FILE"),
-        (State::Open, Kind::Open, "statements are open in the ledger, or have cases for the other side of the link alone", ""),
+        (
+            State::NotRun,
+            Kind::NotRun,
+            "statements have cases that are not in these records",
+            "fsct run annex-i --dut URL --out DIR",
+        ),
+        (
+            State::Iodd,
+            Kind::ByHand,
+            "statements are about the IODD, which a command of its own judges; its outcome has to be attached",
+            "fsct iodd FILE",
+        ),
+        (
+            State::OtherSide,
+            Kind::Open,
+            "statements concern both sides of the link, and their cases are for the other side",
+            "",
+        ),
+        (State::Open, Kind::Open, "statements are open in the ledger: nothing is done about them yet", ""),
         (State::Bench, Kind::ByHand, "statements need instruments", ""),
         (State::Inspection, Kind::ByHand, "statements need a person who reads documents or looks at the product", ""),
         (State::Untestable, Kind::ByHand, "statements cannot be judged from outside", ""),
@@ -26,7 +42,11 @@ pub fn section(dossier: &Dossier<'_>) -> Section {
         if !ids.is_empty() {
             let more = if ids.len() > LISTED { format!(" and {} more", ids.len() - LISTED) } else { String::new() };
             let first = ids.iter().take(LISTED).copied().collect::<Vec<_>>().join(", ");
-            gaps.push(Gap::closed_by(kind, format!("{} {what}: {first}{more}; Annex A has each with its reason", ids.len()), command));
+            gaps.push(Gap::closed_by(
+                kind,
+                format!("{} {what}: {first}{more}; Annex A has each with its reason", ids.len()),
+                command,
+            ));
         }
     }
     for edition in ["v1.1", "iec2022"] {

@@ -47,6 +47,8 @@ pub struct Statement {
 pub struct KnownCase {
     /// Its id.
     pub id: String,
+    /// Its suite.
+    pub suite: String,
     /// `device` or `master`.
     pub role: String,
     /// Ids of the statements it judges.

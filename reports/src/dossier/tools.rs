@@ -11,31 +11,57 @@ use maud::{Markup, html};
 const NAMED: usize = 4;
 
 pub fn section(dossier: &Dossier<'_>) -> Section {
-    let gauntlets: Vec<(usize, &Gauntlet)> = dossier.pieces(|piece| if let Piece::Gauntlet(one) = piece { Some(one) } else { None }).collect();
+    let gauntlets: Vec<(usize, &Gauntlet)> =
+        dossier.pieces(|piece| if let Piece::Gauntlet(one) = piece { Some(one) } else { None }).collect();
     let mut gaps = Vec::new();
     let (nothing, gap) = absent("the kill matrix: what the cases are worth", "fsct gauntlet --out DIR");
     if gauntlets.is_empty() {
         gaps.push(gap);
     }
     for one in dossier.tool.self_test.iter().filter(|one| !one.passed) {
-        gaps.push(Gap::closed_by(Kind::Failure, format!("The self-test of the tool failed: {}: {}", one.what, one.outcome), one.command.clone()));
+        gaps.push(Gap::closed_by(
+            Kind::Failure,
+            format!("The self-test of the tool failed: {}: {}", one.what, one.outcome),
+            one.command.clone(),
+        ));
     }
-    for (source, matrix) in gauntlets.iter().flat_map(|(source, one)| one.roles.iter().map(move |matrix| (source, matrix))) {
+    for (source, matrix) in
+        gauntlets.iter().flat_map(|(source, one)| one.roles.iter().map(move |matrix| (source, matrix)))
+    {
         let (survivors, idle) = (matrix.survivors().count(), matrix.idle().count());
         if survivors > 0 {
-            gaps.push(Gap::new(Kind::Inconclusive, format!("{survivors} mutants of the reference {} survive all cases, record [{source}]", role(&matrix.role))));
+            gaps.push(Gap::new(
+                Kind::Inconclusive,
+                format!(
+                    "{survivors} mutants of the reference {} survive all cases, record [{source}]",
+                    role(&matrix.role)
+                ),
+            ));
         }
         if idle > 0 {
-            gaps.push(Gap::new(Kind::Inconclusive, format!("{idle} cases for an {} kill no mutant, record [{source}]", role(&matrix.role))));
+            gaps.push(Gap::new(
+                Kind::Inconclusive,
+                format!("{idle} cases for an {} kill no mutant, record [{source}]", role(&matrix.role)),
+            ));
         }
     }
-    if !gauntlets.is_empty() && !gauntlets.iter().any(|(_, one)| one.roles.iter().any(|matrix| matrix.role == dossier.product.role)) {
-        gaps.push(Gap::closed_by(Kind::NotRun, format!("The kill matrix is not of the cases for an {}", role(&dossier.product.role)), "fsct gauntlet --out DIR"));
+    if !gauntlets.is_empty()
+        && !gauntlets.iter().any(|(_, one)| one.roles.iter().any(|matrix| matrix.role == dossier.product.role))
+    {
+        gaps.push(Gap::closed_by(
+            Kind::NotRun,
+            format!("The kill matrix is not of the cases for an {}", role(&dossier.product.role)),
+            "fsct gauntlet --out DIR",
+        ));
     }
     for (number, source) in (1..).zip(&dossier.sources).filter(|(_, source)| source.fsct != dossier.tool.version) {
         gaps.push(Gap::closed_by(
             Kind::Inconclusive,
-            format!("Record [{number}] was made by fsct {}, this dossier by fsct {}: the self-test below is of the latter", short(&source.fsct, NAME), dossier.tool.version),
+            format!(
+                "Record [{number}] was made by fsct {}, this dossier by fsct {}: the self-test below is of the latter",
+                short(&source.fsct, NAME),
+                dossier.tool.version
+            ),
             "fsct dossier, of the version that made the records",
         ));
     }
@@ -64,12 +90,36 @@ pub fn section(dossier: &Dossier<'_>) -> Section {
 fn chain(dossier: &Dossier<'_>, gauntlets: &[(usize, &Gauntlet)]) -> Markup {
     let mutants: usize = gauntlets.iter().flat_map(|(_, one)| &one.roles).map(|matrix| matrix.mutants.len()).sum();
     let rows: [(&str, &str, Markup); 6] = [
-        ("Signatures and octet codecs", "Judge and product share one wrong checksum and agree with each other", html! { "Known answers printed in the standard or derived from it, and a second, bitwise implementation in the tests" }),
-        ("Tables and oracle", "The judge has a row wrong", html! { "The reference DUTs and the stacks in C and Python are further readings of the tables that share no code with it; mutants of tables and oracle are in docs/assurance.md" }),
-        ("Cases", "A case looks at nothing", html! { @if mutants == 0 { "not shown: no kill matrix in these records" } @else { (mutants) " mutants, below " (cite_all(gauntlets.iter().map(|(source, _)| *source))) } }),
-        ("Adapter and rig", "A lost or late octet is taken for a fault of the product, or hides one", html! { "Frames carry a CRC; what the rig loses is told apart from verdicts (“not executed as meant”); a dead DUT passes nothing" }),
-        ("Clock", "Times are judged that were not measured so", html! { @for (number, proof) in (1..).zip(&dossier.run.header.duts).filter_map(|(number, dut)| Some((number, dut.clock_proof.as_ref()?))).take(NAMED) { "DUT " (number) ": " (short(&proof.said(), TEXT)) ". " } "A verdict on a time keeps a guard band of the stated uncertainty" }),
-        ("Records and this dossier", "A record is changed, or belongs to something else", html! { "Hash, version and seed of each record are in chapter 9; on a virtual clock the same seed gives the same octets" }),
+        (
+            "Signatures and octet codecs",
+            "Judge and product share one wrong checksum and agree with each other",
+            html! { "Known answers printed in the standard or derived from it, and a second, bitwise implementation in the tests" },
+        ),
+        (
+            "Tables and oracle",
+            "The judge has a row wrong",
+            html! { "The reference DUTs and the stacks in C and Python are further readings of the tables that share no code with it; mutants of tables and oracle are in docs/assurance.md" },
+        ),
+        (
+            "Cases",
+            "A case looks at nothing",
+            html! { @if mutants == 0 { "not shown: no kill matrix in these records" } @else { (mutants) " mutants, below " (cite_all(gauntlets.iter().map(|(source, _)| *source))) } },
+        ),
+        (
+            "Adapter and rig",
+            "A lost or late octet is taken for a fault of the product, or hides one",
+            html! { "Frames carry a CRC; what the rig loses is told apart from verdicts (“not executed as meant”); a dead DUT passes nothing" },
+        ),
+        (
+            "Clock",
+            "Times are judged that were not measured so",
+            html! { @for (number, proof) in (1..).zip(&dossier.run.header.duts).filter_map(|(number, dut)| Some((number, dut.clock_proof.as_ref()?))).take(NAMED) { "DUT " (number) ": " (short(&proof.said(), TEXT)) ". " } "A verdict on a time keeps a guard band of the stated uncertainty" },
+        ),
+        (
+            "Records and this dossier",
+            "A record is changed, or belongs to something else",
+            html! { "Hash, version and seed of each record are in chapter 9; on a virtual clock the same seed gives the same octets" },
+        ),
     ];
     html! {
         h3 { "Failure modes of the tool chain" }

@@ -34,13 +34,15 @@ pub enum State {
     Inspection,
     /// Cannot be judged from outside.
     Untestable,
-    /// Judged on the other side of the link alone, or nothing is done about it yet.
+    /// Its cases are for the other side of the link.
+    OtherSide,
+    /// Nothing is done about it yet.
     Open,
 }
 
 impl State {
     /// All of them, in the order they are told.
-    pub const ALL: [State; 13] = [
+    pub const ALL: [State; 14] = [
         State::Failed,
         State::NotExecuted,
         State::Inconclusive,
@@ -53,6 +55,7 @@ impl State {
         State::Bench,
         State::Inspection,
         State::Untestable,
+        State::OtherSide,
         State::Open,
     ];
 
@@ -71,6 +74,7 @@ impl State {
             State::Bench => "□ bench",
             State::Inspection => "□ inspection",
             State::Untestable => "□ untestable",
+            State::OtherSide => "○ other side",
             State::Open => "○ open",
         }
     }
@@ -81,16 +85,19 @@ impl State {
             State::Failed => "a case that judges it failed",
             State::NotExecuted => "a case that judges it was not executed as meant",
             State::Inconclusive => "a case that judges it came to no conclusion",
-            State::Remark => "all cases that judge it passed, with a remark at least once: a reading let pass, or a recommendation not followed",
+            State::Remark => {
+                "all cases that judge it passed, with a remark at least once: a reading let pass, or a recommendation not followed"
+            }
             State::Passed => "all cases that judge it passed",
             State::ByOracle => "compared with the tables in every exchange of every case, and no case failed",
             State::NotApplicable => "its cases do not apply to this product; the reason is in Annex C",
             State::NotRun => "there are cases, and none of them is in these records",
-            State::Iodd => "judged in the IODD by `fsct iodd`, whose outcome is not part of a record",
+            State::Iodd => "judged in the IODD by fsct iodd, whose outcome is no record",
             State::Bench => "needs instruments",
             State::Inspection => "a person has to read documents or look at the product",
             State::Untestable => "cannot be judged from outside",
-            State::Open => "nothing is done about it yet, or its cases are for the other side of the link",
+            State::OtherSide => "concerns both sides, and its cases are for the other side of the link",
+            State::Open => "nothing is done about it yet; why is in Annex A",
         }
     }
 
@@ -156,7 +163,8 @@ impl Trace {
             run.header.not_applicable.iter().filter_map(|(key, _)| key.split('[').next()).collect();
         let concerns = |one: &&Statement| {
             let role_fits = one.dut == role || one.dut == "both" || one.dut == "iodd" && role == "device";
-            judging.contains_key(one.id.as_str()) || role_fits && editions.iter().any(|edition| one.clauses.contains_key(edition))
+            judging.contains_key(one.id.as_str())
+                || role_fits && editions.iter().any(|edition| one.clauses.contains_key(edition))
         };
         let mut known: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
         for case in tool.cases.iter().filter(|case| case.role == role) {
@@ -170,7 +178,9 @@ impl Trace {
                 for_it.iter().filter(|id| !ids.contains(**id)).map(|id| (*id).to_owned()).collect();
             let state = match worst(judges) {
                 Some(state) => state,
-                None if !absent.is_empty() && absent.iter().all(|id| left_out.contains(id.as_str())) => State::NotApplicable,
+                None if !absent.is_empty() && absent.iter().all(|id| left_out.contains(id.as_str())) => {
+                    State::NotApplicable
+                }
                 None if !absent.is_empty() => State::NotRun,
                 None => unjudged(statement, run),
             };
@@ -211,6 +221,7 @@ fn unjudged(statement: &Statement, run: &Run) -> State {
         "bench" => State::Bench,
         "inspection" => State::Inspection,
         "untestable" => State::Untestable,
+        "tested" => State::OtherSide,
         _ => State::Open,
     }
 }

@@ -1,8 +1,8 @@
 //! Annexes: statements with their cases, cases with their statements, and what does not apply.
 
-use super::page::{NAME, TEXT, cite_all};
-use super::trace::Traced;
 use super::Dossier;
+use super::page::{NAME, TEXT, cite_all};
+use super::trace::{State, Traced};
 use crate::case_html::anchor;
 use crate::text::short;
 use maud::{Markup, html};
@@ -23,7 +23,11 @@ pub struct Annex {
 
 pub fn annexes(dossier: &Dossier<'_>) -> [Annex; 3] {
     [
-        Annex { key: "requirements", title: "Annex A: statements, their cases, their verdicts", body: statements(dossier) },
+        Annex {
+            key: "requirements",
+            title: "Annex A: statements, their cases, their verdicts",
+            body: statements(dossier),
+        },
         Annex { key: "cases", title: "Annex B: cases and the statements they judge", body: cases(dossier) },
         Annex { key: "not-applicable", title: "Annex C: cases that do not apply", body: not_applicable(dossier) },
     ]
@@ -41,13 +45,14 @@ fn statements(dossier: &Dossier<'_>) -> Markup {
 
 fn statement(one: &Traced) -> Markup {
     let statement = &one.statement;
-    let clause = |edition: &str| statement.clauses.get(edition).map_or_else(|| "–".to_owned(), |clause| short(clause, NAME));
+    let clause =
+        |edition: &str| statement.clauses.get(edition).map_or_else(|| "–".to_owned(), |clause| short(clause, NAME));
     html! {
         tr id=(anchor(&statement.id, 0)) {
             th scope="row" { (short(&statement.id, NAME)) br; span.soft { (short(&statement.level, NAME)) } }
             td { (clause("v1.1")) }
             td { (clause("iec2022")) }
-            td { (short(&statement.text, TEXT)) @if !one.state.is_judged() && !statement.why.is_empty() { br; i { "Why not: " (short(&statement.why, TEXT)) } } }
+            td { (short(&statement.text, TEXT)) @if !one.state.is_judged() && !statement.why.is_empty() { br; i { (if one.state == State::Iodd { "How: " } else { "Why not: " }) (short(&statement.why, TEXT)) } } }
             td { (one.state.said()) }
             td {
                 @for id in one.cases.iter().take(IDS) { a href={ "#" (anchor(id, 0)) } { (short(id, NAME)) } " " }

@@ -4,7 +4,7 @@ use super::{Choice, Common, Ground, NOTHING_RAN, fail, print, progress};
 use crate::injection::bound::upper_95;
 use crate::injection::random::Campaign;
 use crate::injection::{Halt, Tally};
-use fsct_reports::campaign::{FILE, Counts, RANDOM, Random};
+use fsct_reports::campaign::{Counts, FILE, RANDOM, Random};
 
 /// Arguments.
 #[derive(clap::Args, Debug)]

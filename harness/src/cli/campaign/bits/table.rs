@@ -65,7 +65,9 @@ impl Table {
     pub fn show_length(&mut self) {
         let rows = &self.rows[self.shown..];
         self.shown = self.rows.len();
-        let (Some(Timed { row: first, .. }), Some(Timed { row: last, .. })) = (rows.first(), rows.last()) else { return };
+        let (Some(Timed { row: first, .. }), Some(Timed { row: last, .. })) = (rows.first(), rows.last()) else {
+            return;
+        };
         let bits = match last.bits.strip_prefix("burst ") {
             Some(longest) if first.bits != last.bits => format!("{}..{longest}", first.bits),
             None if first.bits != last.bits => format!("{}..{}", first.bits, last.bits),
