@@ -2,9 +2,9 @@
 
 use super::page::{TEXT, cite, cite_all};
 use super::{Dossier, Gap, Kind, Piece, Section};
-use crate::record::CaseRecord;
 use crate::text::{short, visible as clean};
 use maud::{Markup, html};
+use std::collections::BTreeSet;
 
 pub fn section(dossier: &Dossier<'_>) -> Section {
     let assumptions = assumptions(dossier);
@@ -47,10 +47,12 @@ fn assumptions(dossier: &Dossier<'_>) -> Vec<Assumption> {
         .collect();
     let computed = |what: &str| {
         html! {
-            @if residual.is_empty() { "nothing: no computation of residual error is in these records" }
+            @if residual.is_empty() { "No computation of residual error is in these records." }
             @else { "The rates of chapter 7 " (cite_all(residual.iter().copied())) " are computed for it" (what) }
         }
     };
+    let campaigns = dossier.pieces(|piece| matches!(piece, Piece::Bits(_) | Piece::Random(_)).then_some(piece));
+    let campaigns: Vec<usize> = campaigns.map(|(number, _)| number).collect();
     vec![
         Assumption {
             what: "At most 1 000 SPDUs a second",
@@ -61,17 +63,16 @@ fn assumptions(dossier: &Dossier<'_>) -> Vec<Assumption> {
         Assumption {
             what: "Bit error probability of 1E-2 at most, errors independent",
             clause: "11.4.7, Annex D",
-            support: html! { (computed(", and at smaller and larger ones.")) " Bursts and several bits are in the campaigns of chapter 5." },
+            support: html! {
+                (computed(", and at smaller and larger ones."))
+                @if !campaigns.is_empty() { " What the product makes of falsified bits is in the campaigns of chapter 5 " (cite_all(campaigns)) }
+            },
             gap: "The line in the field: EMC, cables and installation are tests of their own",
         },
         Assumption {
             what: "No storing element between FS-Master and FS-Device",
             clause: "11.4.8",
-            support: cases_about(
-                dossier,
-                "repeated, late and old SPDUs",
-                &["insertion", "repetition", "delay", "stor"],
-            ),
+            support: cases_of(dossier, &["unintended repetition", "unacceptable delay", "insertion"]),
             gap: "Repeated and late SPDUs are detected within the counter alone; that nothing on the line keeps and delivers them is a matter of installation and of the safety manual",
         },
         Assumption {
@@ -83,31 +84,33 @@ fn assumptions(dossier: &Dossier<'_>) -> Vec<Assumption> {
     ]
 }
 
-/// The shortest cycle that a run was made with, as far as it is declared.
+/// The cycle that the first run was made with, as far as it is declared.
 fn fastest(dossier: &Dossier<'_>) -> Markup {
-    let cycles = (0..).zip(&dossier.run.header.duts).filter_map(|(number, dut)| {
+    let cycles = (0_usize..).zip(&dossier.run.header.duts).filter_map(|(number, dut)| {
         let (_, value) = dut.declared.iter().find(|(name, _)| name == "MasterCycleTime")?;
         Some((number, value))
     });
-    let cycles: Vec<(usize, &String)> = cycles.collect();
     html! {
-        @for (number, value) in cycles.iter().take(1) {
+        @for (number, value) in cycles.take(1) {
             "The product was run with a MasterCycleTime of " (short(value, TEXT))
-            @if let Some(seat) = dossier.seats.get(*number) { " " (cite(seat.source + 1)) } "."
+            @if let Some(seat) = dossier.seats.get(number) { " " (cite(seat.source + 1)) } "."
         }
     }
 }
 
-/// How many cases about something ran, and what they came to.
-fn cases_about(dossier: &Dossier<'_>, what: &str, words: &[&str]) -> Markup {
-    let about = |case: &&CaseRecord| {
-        let title = case.title.to_lowercase();
-        words.iter().any(|word| title.contains(word))
-    };
-    let counts = crate::html::counted(dossier.run.cases.iter().filter(about));
+/// What the cases of these error classes of the matrix came to.
+fn cases_of(dossier: &Dossier<'_>, classes: &[&str]) -> Markup {
+    let rows = dossier.run.header.matrix.iter().flat_map(|part| &part.rows);
+    let rows = rows.filter(|row| classes.contains(&row.class.as_str()));
+    let ids: BTreeSet<&str> =
+        rows.flat_map(|row| &row.cells).flat_map(|cell| &cell.cases).map(String::as_str).collect();
+    let counts = crate::html::counted(dossier.run.cases.iter().filter(|case| ids.contains(case.id.as_str())));
     html! {
-        @if counts.is_empty() { "nothing: no case about " (what) " is in these records" }
-        @else { "Cases about " (what) ":" @for ((said, _), count) in counts { " " (said) " × " (count) } " " (cite_all(dossier.runs())) }
+        @if counts.is_empty() { "The error matrix is not in these records." }
+        @else {
+            "The cases of the error matrix about " (classes.join(", ")) ":"
+            @for ((said, _), count) in counts { " " (said) " × " (count) } " " (cite_all(dossier.runs()))
+        }
     }
 }
 

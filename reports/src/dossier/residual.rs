@@ -118,15 +118,18 @@ fn row(length: &Length, code: &Code, one: &Residual, used: &BTreeSet<(ProtMode, 
     let at = one.assumed.bit_error_probability;
     let rp = length.residual.iter().find(|(p, _)| (p - at).abs() < at * 1e-9).map(|(_, rp)| *rp);
     let used = mode_of(code).is_some_and(|mode| used.contains(&(mode, length.octets)));
+    // A longer word is a parameter block, which is not sent in every cycle.
+    let is_spdu = mode_of(code).is_none_or(|mode| length.octets <= mode.spdu_octets(mode.max_pd()) as u64);
+    let hourly = |said: String| if is_spdu { said } else { "–".to_owned() };
     let share = length.monitored_per_hour / one.assumed.share_per_hour * 100.0;
     html! {
         tr {
             th.number scope="row" { @if used { "■ " } (length.octets) }
             td.number { (length.distance) }
             td.number { @match rp { Some(rp) => (small(rp)), None => "–" } }
-            td.number { (small(length.monitored_per_hour)) }
-            td.number { (format!("{share:.2} %")) }
-            td.number { (small(length.unmonitored_per_hour)) }
+            td.number { (hourly(small(length.monitored_per_hour))) }
+            td.number { (hourly(format!("{share:.2} %"))) }
+            td.number { (hourly(small(length.unmonitored_per_hour))) }
             td { @match length.proper { Some(true) => "yes", Some(false) => "no", None => "undecided" } }
             td { @match &length.verdicts { None => "–", Some(said) => { (short(&said.distance, NAME)) ", " (short(&said.residual, NAME)) ", " (short(&said.proper, NAME)) } } }
         }
@@ -166,9 +169,7 @@ fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len() * 3 / 2);
     for octet in text.bytes() {
         match octet {
-            b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'.' | b'_' | b'/' | b':' | b'=' | b' ' => {
-                out.push(octet.into())
-            }
+            b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'.' | b' ' => out.push(octet.into()),
             _ => drop(write!(out, "%{octet:02X}")),
         }
     }

@@ -105,24 +105,25 @@ fn names() -> String {
     KNOWN.map(|(name, _)| name).join(", ")
 }
 
-/// Reads every record of these files and folders, each file once.
+/// Reads every record of these files and folders. One that is given twice, or a copy of one, counts once.
 ///
 /// # Errors
 /// [`SourceError`] of the first that is missing or damaged.
 pub fn read(paths: &[PathBuf]) -> Result<Vec<Source>, SourceError> {
-    let mut files: Vec<PathBuf> = Vec::new();
+    let mut sources: Vec<Source> = Vec::new();
     for path in paths {
-        let found = if path.is_dir() { known(path) } else { vec![path.clone()] };
-        if found.is_empty() {
+        let files = if path.is_dir() { known(path) } else { vec![path.clone()] };
+        if files.is_empty() {
             return Err(SourceError::Empty { path: path.display().to_string() });
         }
-        found.into_iter().for_each(|file| {
-            if !files.contains(&file) {
-                files.push(file);
+        for file in files {
+            let sha256 = hash(&file)?;
+            if sources.iter().all(|source| source.sha256 != sha256) {
+                sources.push(Source::read(&file, sha256)?);
             }
-        });
+        }
     }
-    files.iter().map(|file| Source::read(file)).collect()
+    Ok(sources)
 }
 
 fn known(folder: &Path) -> Vec<PathBuf> {
@@ -130,8 +131,7 @@ fn known(folder: &Path) -> Vec<PathBuf> {
 }
 
 impl Source {
-    fn read(path: &Path) -> Result<Source, SourceError> {
-        let sha256 = hash(path)?;
+    fn read(path: &Path, sha256: String) -> Result<Source, SourceError> {
         // A document ends like its kind; everything else is held to be a journal, whose reader says what is wrong.
         if path.extension().is_some_and(|ending| ending == "json") {
             return document(path, sha256);

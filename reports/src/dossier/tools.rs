@@ -140,7 +140,7 @@ fn killed(source: usize, matrix: &Matrix, dossier: &Dossier<'_>) -> Markup {
             (matrix.cases.len() - matrix.idle().count()) " of " (matrix.cases.len()) " cases kill."
         }
         @if matrix.role == dossier.product.role {
-            table {
+            table.mutants {
                 thead { tr { th scope="col" { "Mutant" } th scope="col" { "Clause" } th scope="col" { "What is wrong" } th.number scope="col" { "Cases that kill it" } th scope="col" { "Of those that judge the clause" } } }
                 @for mutant in &matrix.mutants { (of(mutant)) }
             }

@@ -46,11 +46,27 @@ fn tool() -> Tool {
             statement("R-1-OPEN", "open", "device"),
             statement("R-1-MASTER", "tested", "master"),
         ],
-        cases: vec![known("FSD-0001", "device", "R-11.5.4.1-01"), known("FSD-0900", "device", "R-1-RUN"), known("FSM-0001", "master", "R-1-OTHER")],
-        readings: BTreeMap::from([("A19".into(), Reading { name: "T29 read sequentially".into(), stance: "tolerated".into(), text: "Default: nested.".into() })]),
+        cases: vec![
+            known("FSD-0001", "device", "R-11.5.4.1-01"),
+            known("FSD-0900", "device", "R-1-RUN"),
+            known("FSM-0001", "master", "R-1-OTHER"),
+        ],
+        readings: BTreeMap::from([(
+            "A19".into(),
+            Reading {
+                name: "T29 read sequentially".into(),
+                stance: "tolerated".into(),
+                text: "Default: nested.".into(),
+            },
+        )]),
         items: CHAPTERS.iter().map(|chapter| item(chapter.key)).collect(),
         members: BTreeMap::new(),
-        self_test: vec![SelfTest { what: "Answers".into(), outcome: "all".into(), passed: true, command: "fsct vectors".into() }],
+        self_test: vec![SelfTest {
+            what: "Answers".into(),
+            outcome: "all".into(),
+            passed: true,
+            command: "fsct vectors".into(),
+        }],
     }
 }
 
@@ -74,7 +90,10 @@ fn outline(html: &str) -> String {
 
 /// The part of a page from this heading to the end of its section.
 fn chapter<'h>(html: &'h str, key: &str) -> &'h str {
-    html.split(&format!("id=\"{key}\"")).nth(1).and_then(|rest| rest.split("</section>").next()).unwrap_or_else(|| panic!("no {key}"))
+    html.split(&format!("id=\"{key}\""))
+        .nth(1)
+        .and_then(|rest| rest.split("</section>").next())
+        .unwrap_or_else(|| panic!("no {key}"))
 }
 
 #[test]
