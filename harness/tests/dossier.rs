@@ -136,7 +136,9 @@ fn what_no_record_shows_is_a_gap_with_its_command() {
     ] {
         assert!(gaps.contains(command), "no {command}");
     }
-    for text in ["statements need instruments", "open in the ledger", "no hardware", "that are not in these records"] {
+    for text in
+        ["Statements that need instruments", "open in the ledger", "no hardware", "that are not in these records"]
+    {
         assert!(gaps.contains(text), "no {text:?}");
     }
 }

@@ -14,7 +14,7 @@ pub fn section(dossier: &Dossier<'_>) -> Section {
         let name = dossier.tool.readings.get(id).map_or("", |reading| reading.name.as_str());
         gaps.push(Gap::closed_by(
             Kind::Reading,
-            format!("The product made use of {} ({name}) in {count} cases; whether that reading is acceptable is for the assessor", clean(id)),
+            format!("The product made use of {} ({name}), cases: {count}; whether that reading is acceptable is for the assessor", clean(id)),
             format!("fsct explain {}", clean(id)),
         ));
     }

@@ -12,31 +12,36 @@ const LISTED: usize = 12;
 pub fn section(dossier: &Dossier<'_>) -> Section {
     let mut gaps = Vec::new();
     for (state, kind, what, command) in [
-        (State::Failed, Kind::Failure, "statements are judged by a case that failed", ""),
-        (State::NotExecuted, Kind::Inconclusive, "statements are judged by a case that was not executed as meant", ""),
-        (State::Inconclusive, Kind::Inconclusive, "statements are judged by a case that stayed inconclusive", ""),
+        (State::Failed, Kind::Failure, "Statements judged by a case that failed", ""),
+        (State::NotExecuted, Kind::Inconclusive, "Statements judged by a case that was not executed as meant", ""),
+        (State::Inconclusive, Kind::Inconclusive, "Statements judged by a case that stayed inconclusive", ""),
         (
             State::NotRun,
             Kind::NotRun,
-            "statements have cases that are not in these records",
+            "Statements with cases that are not in these records",
             "fsct run annex-i --dut URL --out DIR",
         ),
         (
             State::Iodd,
             Kind::ByHand,
-            "statements are about the IODD, which a command of its own judges; its outcome has to be attached",
+            "Statements about the IODD, which a command of its own judges, with an outcome that has to be attached",
             "fsct iodd FILE",
         ),
         (
             State::OtherSide,
             Kind::Open,
-            "statements concern both sides of the link, and their cases are for the other side",
+            "Statements about both sides of the link, with cases for the other side alone",
             "",
         ),
-        (State::Open, Kind::Open, "statements are open in the ledger: nothing is done about them yet", ""),
-        (State::Bench, Kind::ByHand, "statements need instruments", ""),
-        (State::Inspection, Kind::ByHand, "statements need a person who reads documents or looks at the product", ""),
-        (State::Untestable, Kind::ByHand, "statements cannot be judged from outside", ""),
+        (State::Open, Kind::Open, "Statements open in the ledger, which nothing is done about yet", ""),
+        (State::Bench, Kind::ByHand, "Statements that need instruments", ""),
+        (
+            State::Inspection,
+            Kind::ByHand,
+            "Statements that need a person who reads documents or looks at the product",
+            "",
+        ),
+        (State::Untestable, Kind::ByHand, "Statements that cannot be judged from outside", ""),
     ] {
         let ids: Vec<&str> = dossier.trace.in_state(state).map(|one| one.statement.id.as_str()).collect();
         if !ids.is_empty() {
@@ -44,7 +49,7 @@ pub fn section(dossier: &Dossier<'_>) -> Section {
             let first = ids.iter().take(LISTED).copied().collect::<Vec<_>>().join(", ");
             gaps.push(Gap::closed_by(
                 kind,
-                format!("{} {what}: {first}{more}; Annex A has each with its reason", ids.len()),
+                format!("{what}: {} ({first}{more}); Annex A has each", ids.len()),
                 command,
             ));
         }
