@@ -1,4 +1,4 @@
-//! What `fsct campaign` leaves: `campaign.json`, one document a campaign. Nothing in it depends on wall time.
+//! What `fsct campaign` leaves: `campaign.json`, one document a campaign. On a virtual clock nothing in it depends on wall time.
 
 use crate::record::DutInfo;
 use serde::{Deserialize, Serialize};
