@@ -6,7 +6,7 @@
 
 mod assembly;
 mod checking;
-mod document;
+pub mod document;
 mod documents;
 mod gap;
 mod gaps;
@@ -20,7 +20,7 @@ mod source;
 mod specification;
 mod tool;
 mod tools;
-mod trace;
+pub mod trace;
 mod tracing;
 
 pub use assembly::{AssemblyError, Dossier, Identity, Seat};

@@ -39,7 +39,7 @@ pub struct Source {
     pub piece: Piece,
 }
 
-/// What a record holds. A new kind of record gets a variant here, its schema in [`Source::read`], and the chapter that shows it.
+/// What a record holds. A new kind of record gets a variant here, its schema where documents are read, and the chapter that shows it.
 #[derive(Clone, Debug)]
 pub enum Piece {
     /// `fsct run` or `fsct capture`.
