@@ -7,6 +7,7 @@ use crate::ledger::{Class, Ledger};
 use crate::problem::{Problem, Source, suggestion};
 use crate::tree::{self, Fields, Placed};
 use crate::yaml::{self, Node, Value};
+use fsct_reports::dossier::CHAPTERS;
 use fsct_reports::record::{Evidence, EvidenceItem};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -26,6 +27,7 @@ pub struct AnnexI {
 
 #[derive(Debug)]
 struct Item {
+    chapter: String,
     clause: String,
     requirement: Placed,
     asks: Placed,
@@ -88,6 +90,7 @@ impl AnnexI {
             classes.insert(name.to_owned(), count);
         }
         let items = self.items.iter().map(|item| EvidenceItem {
+            chapter: item.chapter.clone(),
             clause: item.clause.clone(),
             asks: item.asks.0.clone(),
             cases: item.cases.iter().map(|(name, _)| (name.clone(), members(name))).collect(),
@@ -101,6 +104,7 @@ impl AnnexI {
 
 fn item(source: &Arc<Source>, node: &Node, problems: &mut Vec<Problem>) -> Option<Item> {
     let mut fields = Fields::new(source, node, "an item of Annex I", problems);
+    let chapter = fields.word("chapter", &CHAPTERS.map(|chapter| (chapter.key, chapter.key)));
     let clause = fields.text("clause");
     let requirement = fields.text("requirement");
     let asks = fields.text("asks");
@@ -122,6 +126,7 @@ fn item(source: &Arc<Source>, node: &Node, problems: &mut Vec<Problem>) -> Optio
     fields.finish(problems);
     let text = |placed: Placed| placed.0;
     Some(Item {
+        chapter: chapter?.to_owned(),
         clause: clause?.0,
         requirement: requirement?,
         asks: asks?,
@@ -153,20 +158,23 @@ mod tests {
 
     #[test]
     fn an_item_without_support_names_its_gap() {
-        let problems = parsed("- {clause: I.1, requirement: R-v11.I.1-01, asks: something}").expect_err("no gap");
+        let problems = parsed("- {clause: I.1, chapter: product, requirement: R-v11.I.1-01, asks: something}")
+            .expect_err("no gap");
         assert!(problems[0].to_string().contains("has to say so under `gaps`"), "{}", problems[0]);
     }
 
     #[test]
     fn an_item_does_not_rest_on_all_items() {
-        let problems = parsed("- {clause: I.1, requirement: R-v11.I.1-01, asks: x, cases: [annex-i]}");
+        let problems =
+            parsed("- {clause: I.1, chapter: product, requirement: R-v11.I.1-01, asks: x, cases: [annex-i]}");
         assert!(problems.expect_err("it is circular")[0].to_string().contains("supports no item"));
     }
 
     #[test]
     fn a_statement_without_an_item_and_an_unknown_suite_are_problems() {
         let library = Library::embedded().expect("the files are sound");
-        let one = parsed("- {clause: I.1, requirement: R-v11.I.1-01, asks: x, cases: [scl-devise]}").expect("sound");
+        let one = parsed("- {clause: I.1, chapter: product, requirement: R-v11.I.1-01, asks: x, cases: [scl-devise]}")
+            .expect("sound");
         let mut problems = Vec::new();
         one.check(["scl-device"].into_iter(), &library.ledger, &mut problems);
         let said: Vec<String> = problems.iter().map(ToString::to_string).collect();

@@ -483,5 +483,6 @@ pub fn dut_info(url: &str, profile: &Profile, bench: &Bench) -> DutInfo {
                 )
             })
             .collect(),
+        declared: profile.facts(),
     }
 }

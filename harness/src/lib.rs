@@ -11,6 +11,7 @@ pub mod charts;
 pub mod cli;
 pub mod conditions;
 pub mod coverage;
+pub mod dossier;
 pub mod engine;
 pub mod expect;
 pub mod gauntlet;

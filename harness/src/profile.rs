@@ -1,5 +1,7 @@
 //! What a product declares (PICS and PIXIT) and the bench it stands on: `testcases/profiles/*.yaml`.
 
+mod facts;
+
 use crate::oracle::{Mask, Tolerances};
 use crate::problem::{Problem, Source};
 use crate::structure::Declared;

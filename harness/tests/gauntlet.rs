@@ -63,9 +63,9 @@ fn what_is_withheld_is_safe_or_what_stood() {
 fn without_cases_everything_survives_and_nothing_is_clean() {
     let matrix = against(&[]);
     assert_eq!((matrix.survivors().count(), matrix.cases.len()), (matrix.mutants.len(), 0));
-    let gauntlet = Gauntlet { roles: vec![matrix], seconds: 0.0 };
+    let gauntlet = Gauntlet::new(vec![matrix], 0.0);
     assert!(!gauntlet.is_clean() && gauntlet.html().contains("of them survive"));
-    assert!(!Gauntlet { roles: Vec::new(), seconds: 0.0 }.is_clean(), "an empty gauntlet shows nothing");
+    assert!(!Gauntlet::new(Vec::new(), 0.0).is_clean(), "an empty gauntlet shows nothing");
 }
 
 #[test]

@@ -21,20 +21,27 @@ pub fn table(asked: &Asked, machine: &MachineInfo) -> Markup {
         }
         details open[asked.kinds().iter().any(|(_, reached)| !reached.missing.is_empty())] {
             summary { "Guards and timers, with the number of cases that saw them decide" }
-            div.scroll tabindex="0" role="group" aria-label="Guards and timers" {
-                table {
-                    thead { tr { th { "State" } th { "Decides" } th { "Asked" } th { "true, expired" } th { "false, restarted" } th { "Clause" } } }
-                    tbody {
-                        @for condition in machine.conditions.iter().take(LISTED) {
-                            tr {
-                                td { (short(&condition.state, TEXT)) }
-                                td { (short(&condition.rows, TEXT)) }
-                                td { code { (short(&condition.id, TEXT)) } " " (short(&condition.asks, TEXT)) }
-                                @for words in [["true", "expired"], ["false", "restarted"]] {
-                                    (side(asked, machine, condition, words))
-                                }
-                                td { (short(&condition.clause, TEXT)) }
+            (conditions(asked, machine))
+        }
+    }
+}
+
+/// Every condition with how often each side of it decided.
+pub fn conditions(asked: &Asked, machine: &MachineInfo) -> Markup {
+    html! {
+        div.scroll tabindex="0" role="group" aria-label="Guards and timers" {
+            table {
+                thead { tr { th { "State" } th { "Decides" } th { "Asked" } th { "true, expired" } th { "false, restarted" } th { "Clause" } } }
+                tbody {
+                    @for condition in machine.conditions.iter().take(LISTED) {
+                        tr {
+                            td { (short(&condition.state, TEXT)) }
+                            td { (short(&condition.rows, TEXT)) }
+                            td { code { (short(&condition.id, TEXT)) } " " (short(&condition.asks, TEXT)) }
+                            @for words in [["true", "expired"], ["false", "restarted"]] {
+                                (side(asked, machine, condition, words))
                             }
+                            td { (short(&condition.clause, TEXT)) }
                         }
                     }
                 }

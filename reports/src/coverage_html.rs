@@ -183,13 +183,20 @@ pub fn in_a_row(coverage: &Coverage, header: &Header) -> Markup {
         @if let (Some(asked), Some(machine)) = (&coverage.asked, machine) { (asked_html::table(asked, machine)) }
         details {
             summary { "Pairs of steps, with the number of cases that took them" }
-            @if let Some(steps) = steps {
-                p.soft { "A step is everything between two waiting states: " @for (name, taken) in steps.iter().take(LISTED) { (short(name, NAME)) " = " (short(taken, NAME)) "; " } }
-            }
-            ul.cells {
-                @for (name, count) in coverage.step_pairs.cases.iter().take(LISTED) {
-                    li.none[*count == 0] { span.word { (short(name, NAME)) } " " @if *count == 0 { "never" } @else { "in " (count) } }
-                }
+            (pairs_of_steps(coverage, steps.map_or(&[][..], Vec::as_slice)))
+        }
+    }
+}
+
+/// Pairs of steps, with the number of cases that took them, below what the steps are.
+pub fn pairs_of_steps(coverage: &Coverage, steps: &[(String, String)]) -> Markup {
+    html! {
+        @if !steps.is_empty() {
+            p.soft { "A step is everything between two waiting states: " @for (name, taken) in steps.iter().take(LISTED) { (short(name, NAME)) " = " (short(taken, NAME)) "; " } }
+        }
+        ul.cells {
+            @for (name, count) in coverage.step_pairs.cases.iter().take(LISTED) {
+                li.none[*count == 0] { span.word { (short(name, NAME)) } " " @if *count == 0 { "never" } @else { "in " (count) } }
             }
         }
     }

@@ -2,11 +2,15 @@
 
 use crate::text::{short, visible as clean};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::io;
 use std::path::Path;
 
+/// Name of the file in its folder.
+pub const FILE: &str = "gauntlet.json";
+/// Version of the schema of [`Gauntlet`].
+pub const SCHEMA: &str = "fsct-gauntlet/1";
 const STYLE: &str = include_str!("style.css");
 /// What the matrix needs beyond the style of the report.
 const MATRIX: &str = "table.kills{border-collapse:collapse;font-size:.7rem}\
@@ -15,8 +19,12 @@ table.kills td{text-align:center;min-width:.8em;border:1px solid #8883}\
 table.kills th.mutant{text-align:left;white-space:nowrap;padding-right:.5rem}";
 
 /// A gauntlet that was run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Gauntlet {
+    /// [`SCHEMA`].
+    pub schema: String,
+    /// Version of fsct.
+    pub fsct: String,
     /// One matrix a role.
     pub roles: Vec<Matrix>,
     /// Wall time in seconds.
@@ -24,7 +32,7 @@ pub struct Gauntlet {
 }
 
 /// The mutants of a reference DUT against the cases for its role.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Matrix {
     /// `device` or `master`.
     pub role: String,
@@ -35,7 +43,7 @@ pub struct Matrix {
 }
 
 /// A deliberate fault and what finds it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mutant {
     /// Its name.
     pub name: String,
@@ -52,7 +60,7 @@ pub struct Mutant {
 }
 
 /// A case of the suites.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Case {
     /// Its id.
     pub id: String,
@@ -77,6 +85,11 @@ impl Matrix {
 }
 
 impl Gauntlet {
+    /// What this version of fsct found, and how long it took.
+    pub fn new(roles: Vec<Matrix>, seconds: f64) -> Gauntlet {
+        Gauntlet { schema: SCHEMA.to_owned(), fsct: env!("CARGO_PKG_VERSION").to_owned(), roles, seconds }
+    }
+
     /// Whether every mutant is killed by a case that names its clause, and every case kills.
     pub fn is_clean(&self) -> bool {
         !self.roles.is_empty()
@@ -96,7 +109,7 @@ impl Gauntlet {
     /// What the file system says.
     pub fn write(&self, folder: &Path) -> io::Result<()> {
         std::fs::create_dir_all(folder)?;
-        std::fs::write(folder.join("gauntlet.json"), self.json())?;
+        std::fs::write(folder.join(FILE), self.json())?;
         std::fs::write(folder.join("gauntlet.html"), self.html())
     }
 

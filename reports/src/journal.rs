@@ -128,7 +128,15 @@ impl Reader {
     /// # Errors
     /// [`ReadError`] when there is no file, or its first line is no header of this schema.
     pub fn open(folder: &Path) -> Result<Reader, ReadError> {
-        let mut lines = Lines::open(folder)?;
+        Reader::open_file(&folder.join(FILE))
+    }
+
+    /// Opens a journal by its own name and reads its header.
+    ///
+    /// # Errors
+    /// As [`Reader::open`].
+    pub fn open_file(file: &Path) -> Result<Reader, ReadError> {
+        let mut lines = Lines::open(file)?;
         if !lines.advance()? {
             return Err(lines.wrong("the first line is missing".to_owned()));
         }
@@ -203,10 +211,9 @@ struct Lines {
 }
 
 impl Lines {
-    fn open(folder: &Path) -> Result<Lines, ReadError> {
-        let file = folder.join(FILE);
+    fn open(file: &Path) -> Result<Lines, ReadError> {
         let path = file.display().to_string();
-        match File::open(&file) {
+        match File::open(file) {
             Ok(file) => Ok(Lines { file: BufReader::new(file), path, number: 0, octets: Vec::new() }),
             Err(error) => Err(ReadError::Io { path, error }),
         }

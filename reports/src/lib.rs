@@ -2,12 +2,14 @@
 
 mod asked;
 mod asked_html;
+pub mod campaign;
 mod case_html;
 mod chart;
 mod compare;
 mod coverage;
 mod coverage_html;
 pub mod decode;
+pub mod dossier;
 mod duts;
 mod evidence_html;
 pub mod gauntlet;

@@ -189,6 +189,9 @@ pub struct Evidence {
 /// An item of Annex I.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct EvidenceItem {
+    /// The chapter of a dossier that answers it.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub chapter: String,
     /// Clause: `I.4`.
     pub clause: String,
     /// What it asks for.
@@ -238,6 +241,9 @@ pub struct DutInfo {
     pub clock_proof: Option<ClockProofInfo>,
     /// What it can be configured as, one text an offer.
     pub offers: Vec<String>,
+    /// What its profile declares (PICS and PIXIT): name in the standard's spelling, then value with unit.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub declared: Vec<(String, String)>,
 }
 
 /// The clock of a DUT held against a loop-back before the first case, in nanoseconds.

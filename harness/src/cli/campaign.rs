@@ -9,7 +9,7 @@ mod replay;
 use super::bench;
 use super::run::{candidate_profile, given_profiles};
 use super::{Cases, NOTHING_RAN, RIG, USAGE, fail, print};
-use crate::campaign::Bench;
+use crate::campaign::{Bench, dut_info};
 use crate::injection::shrink::shrink;
 use crate::injection::{Halt, Ran, Script, Tally, Target};
 use crate::library::Library;
@@ -17,6 +17,7 @@ use crate::profile::{Profile, default_profile};
 use clap::Subcommand;
 use fsct_adapters::{Address, Offer, Role};
 use fsct_protocol::{Edition, ProtMode};
+use fsct_reports::campaign::Head;
 use fsct_reports::visible;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -152,6 +153,12 @@ impl Ground {
     fn target(&self) -> Result<Target<'_>, u8> {
         let allowed = self.profile.allowed(&self.library.tolerances, &[], &[]).map_err(|why| fail(USAGE, why))?;
         Ok(Target { library: &self.library, profile: &self.profile, allowed, interrupted: &self.interrupted })
+    }
+
+    /// What the document of a campaign says first.
+    fn head(&self, schema: &str, seed: u64, bench: &Bench) -> Head {
+        let dut = dut_info(&self.url, &self.profile, bench);
+        Head { schema: schema.to_owned(), fsct: env!("CARGO_PKG_VERSION").to_owned(), seed, dut }
     }
 
     fn write(&self, name: &str, text: &str) -> Result<PathBuf, u8> {

@@ -168,6 +168,7 @@ fn info(args: &Args, profile: &Profile, capture: &Capture) -> DutInfo {
         clock: "recorded".to_owned(),
         resolution_ns: capture.uncertainty_ns(),
         uncertainty_ns: capture.uncertainty_ns(),
+        declared: profile.facts(),
         ..DutInfo::default()
     }
 }

@@ -50,7 +50,7 @@ fn execute(args: &Args) -> Result<u8, u8> {
         }
     }
     bar.finish_and_clear();
-    let gauntlet = Gauntlet { roles, seconds: begin.elapsed().as_secs_f64() };
+    let gauntlet = Gauntlet::new(roles, begin.elapsed().as_secs_f64());
     gauntlet
         .write(&args.out)
         .map_err(|error| fail(RIG, format!("the matrix in {} cannot be written: {error}", args.out.display())))?;

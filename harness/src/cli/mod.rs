@@ -8,6 +8,7 @@ mod capture;
 mod check;
 mod crc;
 mod doctor;
+mod dossier;
 mod explain;
 mod gauntlet;
 mod host;
@@ -71,6 +72,8 @@ enum Command {
     Simulate(simulate::Args),
     /// Render reports from a record once more
     Report(report::Args),
+    /// Put records of one product together for an assessor: one page to be printed, along Annex I.4 of v1.1
+    Dossier(dossier::Args),
     /// Run every mutant of the reference DUTs against the suites: the kill matrix
     Gauntlet(gauntlet::Args),
     /// Explore both machines of the SCL, as the tables have them, with a black channel that does its worst
@@ -105,6 +108,7 @@ pub fn main() -> ExitCode {
         Command::Explain(args) => explain::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Report(args) => report::run(&args),
+        Command::Dossier(args) => dossier::run(&args),
         Command::Gauntlet(args) => gauntlet::run(&args),
         Command::Prove(args) => prove::run(&args),
         Command::Vectors(args) => vectors::run(&args),

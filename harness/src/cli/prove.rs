@@ -399,6 +399,8 @@ fn document((model, states, outcomes): &Proven) -> Value {
         })
     };
     json!({
+        "schema": fsct_reports::dossier::PROOF,
+        "fsct": env!("CARGO_PKG_VERSION"),
         "edition": model.edition.name(),
         "readings": readings(model),
         "mixed": model.mixed,

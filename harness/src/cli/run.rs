@@ -107,6 +107,7 @@ impl Candidate<'_> {
                 url: self.url.to_owned(),
                 role: self.profile.role.to_string(),
                 profile: self.profile.name.clone(),
+                declared: self.profile.facts(),
                 ..DutInfo::default()
             },
         }

@@ -8,7 +8,7 @@
 use super::action::{Action, Script};
 use super::corruption::{Corruptions, Mask, bits};
 use super::finding::{Finding, Halt};
-use super::stage::{Counts, Stage, Tally, Target};
+use super::stage::{Stage, Tally, Target};
 use crate::campaign::Bench;
 use crate::link::Link;
 use crate::oracle::Setup;
@@ -16,6 +16,7 @@ use crate::session::{Item, Session};
 use crate::tester::Tester;
 use fsct_adapters::{Octets, Role, Service, Variant};
 use fsct_protocol::spdu::{Control, InSpdu, OutSpdu, Pd, Status, View, inv3, succ};
+use fsct_reports::campaign::Counts;
 
 /// Corruptions in one batch.
 const BATCH: usize = 256;

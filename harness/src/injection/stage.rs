@@ -14,6 +14,7 @@ use crate::session::Session;
 use crate::tester::Tester;
 use fsct_adapters::{Octets, Pco, Role, Service, Variant};
 use fsct_protocol::spdu::{Pd, View, Wire, inv3, succ};
+use fsct_reports::campaign::Counts;
 use fsct_reports::record::{Execution, Verdict};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::SeedableRng;
@@ -37,32 +38,6 @@ pub struct Target<'t> {
     pub allowed: Mask,
     /// Set when the user asks to stop.
     pub interrupted: &'t AtomicBool,
-}
-
-/// What came of the faults of one class.
-#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, serde::Serialize)]
-pub struct Counts {
-    /// Faults brought in.
-    pub injected: u64,
-    /// The SPDU was processed and answered as an error, or the watchdog expired.
-    pub detected: u64,
-    /// Left unprocessed, as the tables ask: nothing came, or nothing with another counter.
-    pub dropped: u64,
-    /// The falsified SPDU is a valid one in its place: no receiver can tell.
-    pub valid: u64,
-    /// The DUT did not do what the tables ask.
-    pub failed: u64,
-}
-
-impl Counts {
-    /// Adds others.
-    pub fn add(&mut self, other: Counts) {
-        self.injected += other.injected;
-        self.detected += other.detected;
-        self.dropped += other.dropped;
-        self.valid += other.valid;
-        self.failed += other.failed;
-    }
 }
 
 /// What was done to a DUT.

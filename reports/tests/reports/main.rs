@@ -4,6 +4,7 @@ mod common;
 mod compare;
 mod coverage;
 mod decode;
+mod dossier;
 mod journal;
 mod measured;
 mod plot;

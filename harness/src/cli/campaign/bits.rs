@@ -9,6 +9,7 @@ use crate::injection::exhaustive::{Outcome, Sweep};
 use crate::injection::{Halt, Script, Target};
 use crate::trace::hex;
 use fsct_adapters::{Address, Offer, Role, Variant};
+use fsct_reports::campaign;
 use std::collections::BTreeMap;
 use std::num::NonZero;
 use std::ops::RangeInclusive;
@@ -95,6 +96,7 @@ pub fn run(args: &Args) -> Result<u8, u8> {
         None => args.flips.clone().map(Kind::Flips).collect(),
     };
     let (ground, first) = Ground::find(&args.common)?;
+    let head = ground.head(campaign::BITS, args.choice.seed, &first);
     let target = ground.target()?;
     let units = units(args, &kinds, ground.profile.role, &first.description.offers);
     if units.is_empty() {
@@ -128,7 +130,7 @@ pub fn run(args: &Args) -> Result<u8, u8> {
     });
     bar.finish_and_clear();
     table.show_all();
-    ground.write("campaign.json", &table.report(args.choice.seed, &found))?;
+    ground.write(campaign::FILE, &table.report(head, &found))?;
     for (number, found) in (1..).zip(&found) {
         print(format!("undetected: {}", found.octets));
         ground.tell(&target, &found.script, &found.kind, number)?;

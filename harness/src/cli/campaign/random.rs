@@ -3,10 +3,8 @@
 use super::{Choice, Common, Ground, NOTHING_RAN, fail, print, progress};
 use crate::injection::bound::upper_95;
 use crate::injection::random::Campaign;
-use crate::injection::stage::Counts;
 use crate::injection::{Halt, Tally};
-use serde::Serialize;
-use std::collections::BTreeMap;
+use fsct_reports::campaign::{Counts, FILE, RANDOM, Random};
 
 /// Arguments.
 #[derive(clap::Args, Debug)]
@@ -23,21 +21,10 @@ pub struct Args {
     common: Common,
 }
 
-#[derive(Serialize)]
-struct Report<'r> {
-    schema: &'static str,
-    seed: u64,
-    episodes: u64,
-    exchanges: u64,
-    faults: &'r BTreeMap<&'static str, Counts>,
-    had_to_be_detected: u64,
-    undetected: u64,
-    undetected_fraction_at_most_95: f64,
-}
-
 /// Runs the command.
 pub fn run(args: &Args) -> Result<u8, u8> {
     let (ground, mut bench) = Ground::find(&args.common)?;
+    let head = ground.head(RANDOM, args.choice.seed, &bench);
     let target = ground.target()?;
     let offers = args.choice.offers(ground.profile.role, &bench.description.offers);
     if offers.is_empty() {
@@ -62,19 +49,19 @@ pub fn run(args: &Args) -> Result<u8, u8> {
     let undetected = u64::from(failed);
     let trials = sum.detected + undetected;
     let bound = upper_95(undetected, trials);
-    let report = Report {
-        schema: "fsct-campaign-random/1",
-        seed: args.choice.seed,
+    let report = Random {
+        head,
+        complete: ended.is_none(),
         episodes: campaign.episodes(),
         exchanges: tally.exchanges,
-        faults: &tally.faults,
+        faults: tally.faults.iter().map(|(class, counts)| ((*class).to_owned(), *counts)).collect(),
         had_to_be_detected: trials,
         undetected,
         undetected_fraction_at_most_95: bound,
     };
     let json = serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
     if tally.exchanges > 0 || failed {
-        ground.write("campaign.json", &json)?;
+        ground.write(FILE, &json)?;
         table(&tally, sum);
     }
     match ended {

@@ -6,8 +6,8 @@ use crate::injection::record::{Tried, sweep};
 use crate::trace::hex;
 use fsct_adapters::{Role, Variant};
 use fsct_protocol::fsp::VerifyRecord;
+use fsct_reports::campaign::{FILE, RECORDS, Records, RecordsRow};
 use fsct_reports::visible;
-use serde_json::json;
 use std::ops::RangeInclusive;
 
 /// Arguments.
@@ -51,7 +51,9 @@ pub fn run(args: &Args) -> Result<u8, u8> {
     if variants.is_empty() {
         return Err(fail(NOTHING_RAN, "the DUT offers nothing of the edition and mode asked for"));
     }
-    let (mut rows, mut records) = (Vec::new(), 0);
+    let head = ground.head(RECORDS, args.choice.seed, &bench);
+    let mut report = Records { head, complete: false, rows: Vec::new() };
+    let mut records = 0;
     for variant in variants {
         for flips in args.flips.clone() {
             let corruptions = Corruptions::new(Kind::Flips(flips), VerifyRecord::OCTETS);
@@ -66,19 +68,20 @@ pub fn run(args: &Args) -> Result<u8, u8> {
             records += tried;
             print(format!("{name}: {tried} records, {refused} of them refused"));
             let record = started.as_ref().map(|started| hex(&started.record));
-            rows.push(json!({"variant": name, "flips": flips, "records": tried, "refused": refused, "failed": record}));
+            report.rows.push(RecordsRow { variant: name, flips, records: tried, refused, failed: record });
             if let Some(started) = started {
                 print(format!("  record   {}", hex(&started.record)));
                 print(format!("  clause   {}", visible(&started.finding.clause)));
                 print(format!("  expected {}", visible(&started.finding.expected)));
                 print(format!("  observed {}", visible(&started.finding.observed)));
-                write(&ground, args, &rows)?;
+                write(&ground, &report)?;
                 print(format!("fail: at record {records}"));
                 return Ok(1);
             }
         }
     }
-    write(&ground, args, &rows)?;
+    report.complete = true;
+    write(&ground, &report)?;
     if records == 0 {
         return Err(fail(INCONCLUSIVE, "no record was tried"));
     }
@@ -86,8 +89,7 @@ pub fn run(args: &Args) -> Result<u8, u8> {
     Ok(0)
 }
 
-fn write(ground: &Ground, args: &Args, rows: &[serde_json::Value]) -> Result<(), u8> {
-    let report = json!({"campaign": "record", "seed": args.choice.seed, "rows": rows});
-    let text = serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
-    ground.write("campaign.json", &text).map(|_| ())
+fn write(ground: &Ground, report: &Records) -> Result<(), u8> {
+    let text = serde_json::to_string_pretty(report).unwrap_or_default() + "\n";
+    ground.write(FILE, &text).map(|_| ())
 }

@@ -5,39 +5,18 @@ use super::{FAILURES, Found, Swept, Unit};
 use crate::injection::Halt;
 use crate::injection::bound::upper_95;
 use crate::injection::corruption::Kind;
-use crate::injection::stage::Counts;
-use serde::Serialize;
+use fsct_reports::campaign::{Bits, BitsRow, Counts, Head};
 use std::time::{Duration, Instant};
 
-/// One kind of corruption at one length. The same campaign gives the same rows, so no row holds a time.
-#[derive(Serialize)]
-struct Row {
-    edition: &'static str,
-    mode: &'static str,
-    length: usize,
-    bits: String,
-    #[serde(flatten)]
-    counts: Counts,
-    exchanges: u64,
-    undetected_fraction_at_most_95: f64,
-    complete: bool,
-    #[serde(skip)]
+/// A row with the time it took. The same campaign gives the same rows, so no row holds a time.
+struct Timed {
+    row: BitsRow,
     took: Duration,
-}
-
-#[derive(Serialize)]
-struct Report<'r> {
-    schema: &'static str,
-    seed: u64,
-    had_to_be_detected: u64,
-    undetected_fraction_at_most_95: f64,
-    rows: &'r [Row],
-    undetected: Vec<&'r str>,
 }
 
 /// All rows so far.
 pub struct Table {
-    rows: Vec<Row>,
+    rows: Vec<Timed>,
     /// Rows in the lines that are shown.
     shown: usize,
     undetected: usize,
@@ -58,9 +37,9 @@ impl Table {
     /// Takes a row, and hands back what was found.
     pub fn take(&mut self, unit: &Unit, swept: Swept) -> Vec<Found> {
         let counts = swept.outcome.counts;
-        self.rows.push(Row {
-            edition: unit.variant.edition.name(),
-            mode: unit.variant.mode.name(),
+        let row = BitsRow {
+            edition: unit.variant.edition.name().to_owned(),
+            mode: unit.variant.mode.name().to_owned(),
             length: unit.length,
             bits: match unit.kind {
                 Kind::Flips(flips) => flips.to_string(),
@@ -70,8 +49,8 @@ impl Table {
             exchanges: swept.outcome.exchanges,
             undetected_fraction_at_most_95: bound(counts),
             complete: counts.injected == unit.corruptions.total(),
-            took: swept.took,
-        });
+        };
+        self.rows.push(Timed { row, took: swept.took });
         self.undetected += swept.undetected.len();
         self.ended = swept.halt;
         swept.undetected
@@ -86,14 +65,16 @@ impl Table {
     pub fn show_length(&mut self) {
         let rows = &self.rows[self.shown..];
         self.shown = self.rows.len();
-        let (Some(first), Some(last)) = (rows.first(), rows.last()) else { return };
+        let (Some(Timed { row: first, .. }), Some(Timed { row: last, .. })) = (rows.first(), rows.last()) else {
+            return;
+        };
         let bits = match last.bits.strip_prefix("burst ") {
             Some(longest) if first.bits != last.bits => format!("{}..{longest}", first.bits),
             None if first.bits != last.bits => format!("{}..{}", first.bits, last.bits),
             _ => first.bits.clone(),
         };
         let name = format!("{:<8} {:<6} {:>6} {bits:<11}", first.edition, first.mode, first.length);
-        line(&name, sum(rows), rows.iter().map(|row| row.took).sum());
+        line(&name, sum(rows), rows.iter().map(|timed| timed.took).sum());
     }
 
     /// Shows all rows in one line.
@@ -102,15 +83,14 @@ impl Table {
     }
 
     /// The report.
-    pub fn report(&self, seed: u64, found: &[Found]) -> String {
+    pub fn report(&self, head: Head, found: &[Found]) -> String {
         let sum = sum(&self.rows);
-        let report = Report {
-            schema: "fsct-campaign-bits/1",
-            seed,
+        let report = Bits {
+            head,
             had_to_be_detected: sum.detected + sum.failed,
             undetected_fraction_at_most_95: bound(sum),
-            rows: &self.rows,
-            undetected: found.iter().map(|found| found.octets.as_str()).collect(),
+            rows: self.rows.iter().map(|timed| timed.row.clone()).collect(),
+            undetected: found.iter().map(|found| found.octets.clone()).collect(),
         };
         serde_json::to_string_pretty(&report).unwrap_or_default() + "\n"
     }
@@ -118,7 +98,7 @@ impl Table {
     /// Says what it comes to; the exit code.
     pub fn conclude(&self) -> Result<u8, u8> {
         let sum = sum(&self.rows);
-        let exchanges: u64 = self.rows.iter().map(|row| row.exchanges).sum();
+        let exchanges: u64 = self.rows.iter().map(|timed| timed.row.exchanges).sum();
         print(
             "ignored: the counter is that of the SPDU before, so the DUT may not process it; its data were not taken either",
         );
@@ -132,7 +112,7 @@ impl Table {
             ));
         }
         if self.undetected > 0 {
-            let stopped = if self.rows.iter().all(|row| row.complete) { "" } else { ", stopped there" };
+            let stopped = if self.rows.iter().all(|timed| timed.row.complete) { "" } else { ", stopped there" };
             print(format!("fail: {} corruptions undetected of {}{stopped}", self.undetected, sum.injected));
             return Ok(1);
         }
@@ -152,9 +132,9 @@ fn bound(counts: Counts) -> f64 {
     upper_95(counts.failed, counts.detected + counts.failed)
 }
 
-fn sum(rows: &[Row]) -> Counts {
+fn sum(rows: &[Timed]) -> Counts {
     let mut sum = Counts::default();
-    rows.iter().for_each(|row| sum.add(row.counts));
+    rows.iter().for_each(|timed| sum.add(timed.row.counts));
     sum
 }
 

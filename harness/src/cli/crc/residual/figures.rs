@@ -1,6 +1,7 @@
 //! A survey as JSON and as a drawing.
 
 use super::{Found, Survey, name};
+use fsct_reports::dossier::RESIDUAL;
 use fsct_reports::{Bound, Curve, Plot, plots};
 use fsct_residual::{BIT_ERROR, BLOCKS_PER_HOUR, MONITOR_HOURS, PER_HOUR, Properness, SHARE};
 use serde_json::{Value, json};
@@ -31,6 +32,8 @@ pub fn json(surveys: &[Survey]) -> Value {
         })
     });
     json!({
+        "schema": RESIDUAL,
+        "fsct": env!("CARGO_PKG_VERSION"),
         "assumed": {
             "bit_error_probability": BIT_ERROR, "spdus_per_hour": PER_HOUR, "hours_per_detected_error": MONITOR_HOURS,
             "blocks_per_hour": BLOCKS_PER_HOUR, "share_per_hour": SHARE,
