@@ -8,6 +8,7 @@ pub mod capture;
 pub mod case;
 pub mod channel;
 pub mod cli;
+pub mod complete;
 pub mod conditions;
 pub mod coverage;
 pub mod engine;

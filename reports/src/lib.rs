@@ -5,6 +5,7 @@ mod asked_html;
 mod case_html;
 mod chart;
 mod compare;
+mod complete;
 mod coverage;
 mod coverage_html;
 pub mod decode;
@@ -30,6 +31,7 @@ mod timing;
 
 pub use asked::Asked;
 pub use compare::Differing;
+pub use complete::Complete;
 pub use coverage::{Coverage, Reached};
 pub use journal::{FILE, Journal, ReadError, Reader, Run, read};
 pub use plot::{Bound, Curve, Plot, plots};
