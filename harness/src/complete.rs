@@ -77,21 +77,23 @@ impl Complete {
         }
     }
 
-    /// A point for each sequence. The machine is the same in all editions and modes, so that one variant is enough: the first
-    /// offered.
+    /// A point for each sequence. The machine is the same in all editions and modes, so that one variant is enough: of the newest
+    /// edition the first that is offered.
     pub fn expand(
         self,
         offers: &[Offer],
         variant: impl Fn(&[Offer]) -> Result<Expansion, Problem>,
     ) -> Result<Expansion, Problem> {
-        let of_the_dut = variant(offers.get(..1).unwrap_or_default())?;
+        let newest = offers.iter().map(|offer| offer.edition).max();
+        let one = offers.iter().find(|offer| Some(offer.edition) == newest);
+        let of_the_dut = variant(one.map(std::slice::from_ref).unwrap_or_default())?;
         let Some(point) = of_the_dut.points.first() else { return Ok(of_the_dut) };
         let names = self.inputs();
         let points = self.made().suite.sequences.iter().map(|sequence| {
             let words: Vec<&str> = sequence.iter().filter_map(|input| names.get(*input).copied()).collect();
             point.with(SEQUENCE, words.join(&BETWEEN.to_string()))
         });
-        Ok(Expansion { points: points.collect(), excluded: of_the_dut.excluded })
+        Ok(Expansion { points: points.collect(), excluded: Vec::new() })
     }
 
     /// The steps of a point.

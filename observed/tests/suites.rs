@@ -261,3 +261,35 @@ proptest! {
         claim(&MASTER, 2, &mutation);
     }
 }
+
+/// The machine without what nobody compares: setSD_DC with T28 (A20), the one answer with SDset 0 and without setSD in which PDout_D is
+/// safe, and SDset of an answer to setSD (A11).
+#[test]
+fn no_two_states_of_the_fs_device_are_told_apart_by_what_is_not_compared() {
+    let table = observed(device::Bench::waiting(Readings::default()));
+    let blurred = |(input, edge): (usize, &Edge<Option<device::Output>>)| {
+        let free = |output: device::Output| {
+            let answers_set_sd = device::Bench::INPUTS[input].0.contains("setSD");
+            let leaves = !output.pdout && !output.sd_set && !answers_set_sd;
+            device::Output {
+                set_sd_dc: output.set_sd_dc && !leaves,
+                sd_set: output.sd_set && !answers_set_sd,
+                ..output
+            }
+        };
+        Edge { output: edge.output.map(free), next: edge.next }
+    };
+    let blurred =
+        Mealy { states: table.states.iter().map(|edges| edges.iter().enumerate().map(blurred).collect()).collect() };
+    let sets = identifiers(&table);
+    for one in 0..table.states.len() {
+        for two in (0..table.states.len()).filter(|two| *two != one) {
+            let common = |own: &Vec<usize>, other: &Vec<usize>| {
+                let length = own.iter().zip(other).take_while(|(a, b)| a == b).count();
+                tells(&blurred, (one, two), &own[..length])
+            };
+            let told = sets[one].iter().any(|own| sets[two].iter().any(|other| common(own, other)));
+            assert!(told, "{one} and {two}");
+        }
+    }
+}

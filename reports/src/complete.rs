@@ -1,7 +1,6 @@
 //! What a complete suite shows once all its sequences have passed, in three sentences to quote; or why it shows nothing.
 
 use crate::html::{LISTED, NAME, role};
-use crate::machine::Machine;
 use crate::record::{CaseRecord, CompleteInfo, Execution, Header, Verdict};
 use crate::summary::Summary;
 use crate::text::short;
@@ -152,15 +151,13 @@ impl Complete {
 
 /// The part of the report.
 pub fn section(summary: &Summary) -> Markup {
-    let known = |machine: &Machine, suite: &Complete| machine.walks(&suite.suite.role);
     html! {
         @if !summary.complete.is_empty() {
             h2 { "Complete suites" }
             @for suite in summary.complete.iter().take(LISTED) {
                 h3 {
                     span.word { @if suite.is_shown() { "✓ " } @else { "– " } (short(&suite.suite.id, NAME)) }
-                    @if let Some(machine) = Machine::ALL.iter().find(|machine| known(machine, suite)) { " · " (machine.title()) }
-                    " · " (suite.suite.states) " states and " (suite.suite.extra) " more · counters "
+                    " · " (suite.name()) " · " (suite.suite.states) " states and " (suite.suite.extra) " more · counters "
                     @if suite.suite.absolute { "absolute" } @else { "relative" }
                 }
                 @for sentence in &suite.claim { p { (sentence) } }
