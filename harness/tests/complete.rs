@@ -104,7 +104,11 @@ fn both_references_pass_and_three_sentences_say_what_that_shows() {
     let first = "This FS-Device (iec2022 crc16) answered all 2277 sequences of a complete suite, 12482 inputs in all, as Table 40 has it";
     assert!(out.text("report.html").contains(first));
     let junit = out.text("junit.xml");
-    assert!(junit.contains("\"claim FSD-2402 DUT 1 (reference FS-Device)\"") && junit.contains(first), "{}", &junit[..2_000]);
+    assert!(
+        junit.contains("\"claim FSD-2402 DUT 1 (reference FS-Device)\"") && junit.contains(first),
+        "{}",
+        &junit[..2_000]
+    );
 }
 
 #[test]
