@@ -103,6 +103,7 @@ mod tests {
             execution,
             reasons: Vec::new(),
             tolerances: [("A19".to_owned(), "another \u{1b}reading".to_owned())].into(),
+            open: Vec::new(),
             transitions: [].into(),
             walked: Default::default(),
             start: "operate".to_owned(),

@@ -315,6 +315,10 @@ impl Run<'_> {
         record.execution = outcome.execution;
         record.reasons = outcome.reasons;
         record.tolerances = tolerances;
+        if planned.case.complete.is_some() {
+            let open = used.iter().filter(|number| !shown.has(*number));
+            record.open = open.map(|number| format!("A{number:02}")).collect();
+        }
         record.transitions = taken;
         if let Some(coverage) = self.library.coverage.get(&planned.case.role.to_string()) {
             record.walked = coverage.names(session.walked(), session.sides());
@@ -386,6 +390,7 @@ impl Run<'_> {
             execution: Execution::Ok,
             reasons: Vec::new(),
             tolerances: BTreeMap::new(),
+            open: Vec::new(),
             transitions: BTreeMap::new(),
             walked: Walked::default(),
             start: case.start.clone(),

@@ -352,9 +352,10 @@ impl<'s, 'd> Engine<'s, 'd> {
             return Ok(());
         }
         // The black channel repeats the SPDU until the answer mirrors it: for as long as the latency of the profile, and
-        // while the SCL may still be starting (11.5.4.3).
+        // while the SCL may still be starting (11.5.4.3), which it shows by nothing but an answer to something.
+        let awaited = octets.is_some_and(|octets| octets.as_slice().iter().any(|octet| *octet != 0));
         for sent in 0.. {
-            let starting = self.session.link().oracle.may_be_starting();
+            let starting = awaited && self.session.link().oracle.may_be_starting();
             if starting && self.session.role() == Role::Device {
                 // Only the copy that the started SCL takes is the first one; its answer may still be on its way.
                 let Profile { answer_latency, master_cycle_time_ns, .. } = self.session.profile;
@@ -369,7 +370,7 @@ impl<'s, 'd> Engine<'s, 'd> {
                     Role::Device => counter == self.tester().mirror(),
                     Role::Master => counter != shown,
                 };
-            let starting = self.session.link().oracle.may_be_starting();
+            let starting = awaited && self.session.link().oracle.may_be_starting();
             if answered || sent >= self.session.profile.answer_latency && !starting {
                 break;
             }

@@ -1,6 +1,7 @@
 //! The gauntlet: every mutant of the reference DUTs against every case, the case judging alone, to see what each case is worth.
 
 use crate::campaign::{Bench, Judges, Run};
+use crate::complete;
 use crate::library::Library;
 use crate::plan::{Plan, Selection, plan};
 use crate::problem::Problem;
@@ -61,6 +62,22 @@ impl Fault {
 /// # Errors
 /// The [`Problem`] of a plan, or one that says that the cases come without the profile.
 pub fn matrix(library: &Library, role: Role, done: &(dyn Fn() + Sync)) -> Result<Matrix, Problem> {
+    // Complete suites by themselves: they would kill for every other case, whatever that is worth.
+    let others = library.suites.iter().filter(|suite| suite.group.as_deref() != Some(complete::GROUP));
+    matrix_of(library, role, &others.map(|suite| suite.name.clone()).collect::<Vec<_>>(), 0, done)
+}
+
+/// As [`matrix`], with these suites or groups alone, as deep as said.
+///
+/// # Errors
+/// As [`matrix`].
+pub fn matrix_of(
+    library: &Library,
+    role: Role,
+    suites: &[String],
+    depth: u8,
+    done: &(dyn Fn() + Sync),
+) -> Result<Matrix, Problem> {
     let faults = Fault::all(role);
     let name = judged_by(role);
     let profile = library.profiles.get(&name).ok_or_else(|| {
@@ -74,7 +91,12 @@ pub fn matrix(library: &Library, role: Role, done: &(dyn Fn() + Sync)) -> Result
         Role::Master => Box::new(FsMaster::new(MasterOptions::default())),
     });
     let description = bench.map_err(|error| Problem::without_place("the reference", error.to_string()))?.description;
-    let plan = plan(library, &Selection::default(), profile, &description)?;
+    let mut plan = Plan::default();
+    if !suites.is_empty() {
+        let selection = Selection { suites: suites.to_vec(), depth, ..Selection::default() };
+        plan = self::plan(library, &selection, profile, &description)?;
+        plan.cases.retain(|planned| planned.case.role == role);
+    }
     let allowed = library.tolerances.in_force().union(profile.tolerate);
     let judged = |fault: Fault, judges: Judges| -> Vec<CaseRecord> {
         let interrupted = AtomicBool::new(false);

@@ -9,6 +9,7 @@ pub mod case;
 pub mod channel;
 pub mod charts;
 pub mod cli;
+pub mod complete;
 pub mod conditions;
 pub mod coverage;
 pub mod dossier;

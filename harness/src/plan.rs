@@ -5,7 +5,7 @@ use crate::library::{Library, needs};
 use crate::problem::Problem;
 use crate::profile::{Parameterization, Profile};
 use crate::structure::{self, Declared};
-use fsct_adapters::{ClockKind, Description, Pco, Role};
+use fsct_adapters::{ClockKind, Description, Offer, Pco, Role};
 use fsct_protocol::Edition;
 use std::borrow::Cow;
 
@@ -62,6 +62,8 @@ pub struct Selection {
     pub repeat: u32,
     /// On a real clock: also cases with an FSP_Watchdog above 1 s.
     pub long: bool,
+    /// How deep: cases that say a greater `depth` are left out.
+    pub depth: u8,
 }
 
 impl Selection {
@@ -112,22 +114,39 @@ pub fn plan<'l>(
         let mut by = asked.iter().filter(|members| names(members, case)).peekable();
         (asked.is_empty() || by.peek().is_some()) && (own(case) || !selection.filter.is_empty() || !by.all(of_both))
     };
+    let mut deeper = Vec::new();
     for case in library.cases().filter(wanted) {
+        if case.depth > selection.depth {
+            let named = selection.filter.iter().any(|term| term.contains(&case.id));
+            let term = format!("it takes its time: only with --depth {}", case.depth);
+            deeper.extend((own(case) && (named || selection.filter.is_empty())).then(|| (case.id.clone(), term)));
+            continue;
+        }
         let offers = match profile.structure.filter(|_| of_structure(case)) {
             Some(structure) => structure.narrowed(&description.offers),
+            None if case.complete.is_some() => of_edition(&description.offers, selection.edition),
             None => description.offers.clone(),
         };
         let expansion = case.expand(&offers)?;
         let times = selection.repeat.max(1);
         let points = expansion.points.into_iter();
+        // What excludes one sequence of a complete suite excludes all: they differ in nothing a DUT could lack.
+        let mut same: Option<Option<String>> = None;
         for binding in points.flat_map(|point| repeated(point, times)) {
             let key = format!("{}{}", case.id, binding.key());
             let planned = Planned { case, binding, key };
             if !selection.matches(&planned) {
                 continue;
             }
-            let long = too_long(selection, description, &planned.binding);
-            match long.or_else(|| excluded(library, profile, description, &planned)) {
+            let term = match same.clone().filter(|_| case.complete.is_some()) {
+                Some(term) => term,
+                None => {
+                    let long = too_long(selection, description, &planned.binding);
+                    long.or_else(|| excluded(library, profile, description, &planned))
+                }
+            };
+            same = Some(term.clone());
+            match term {
                 Some(term) => plan.not_applicable.push((planned.key, term)),
                 None => plan.cases.push(planned),
             }
@@ -140,6 +159,9 @@ pub fn plan<'l>(
                 plan.not_applicable.push((planned.key, term));
             }
         }
+    }
+    if plan.cases.is_empty() {
+        plan.not_applicable.extend(deeper);
     }
     if let Some((index, count)) = selection.shard {
         let mut position = 0;
@@ -165,6 +187,11 @@ fn unclaimed(profile: &Profile, case: &Case) -> Option<String> {
 /// Whether a case is about the FS I/O structure, and so about the sizes it has.
 fn of_structure(case: &Case) -> bool {
     case.features.iter().any(|feature| feature == structure::DECLARED)
+}
+
+/// The offers of one edition, or all.
+fn of_edition(offers: &[Offer], edition: Option<Edition>) -> Vec<Offer> {
+    offers.iter().filter(|offer| edition.is_none_or(|edition| offer.edition == edition)).copied().collect()
 }
 
 /// This point as often as asked, each with its number when that is more than once.

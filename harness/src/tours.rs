@@ -3,11 +3,11 @@
 //! They are searched over the rows of `protocol`, with what a case can do to a DUT, and written as ordinary cases. The search is
 //! deterministic: the same rows give the same cases.
 
-pub(crate) mod device;
+pub mod device;
 pub(crate) mod emit;
-pub(crate) mod master;
+pub mod master;
 
-pub use emit::emit;
+pub use emit::{Told, emit};
 
 use crate::walk::{Graph, Trail, Walked};
 use fsct_adapters::Role;

@@ -1,6 +1,6 @@
 //! An FS-Device in front of a tester that plays FS-Master and technology.
 
-use crate::Subject;
+use crate::{Counted, Subject};
 use fsct_protocol::scl::Device;
 use fsct_protocol::scl::Var;
 use fsct_protocol::scl::device::{Readings, Received};
@@ -102,5 +102,13 @@ impl Subject for Bench {
         *device = device.settled();
         let Status { sd_set, d_comm_err, d_timeout, .. } = status;
         (!path.is_empty()).then_some(Output { sd_set, d_comm_err, d_timeout, pdout, set_sd_dc })
+    }
+}
+
+impl Counted for Bench {
+    type Seen = Output;
+
+    fn counter(&self) -> u8 {
+        self.0.status().dcount_i
     }
 }

@@ -4,10 +4,14 @@
 //! nothing"), and sees what comes back on the link and application PCOs. What the rows of `fsct_protocol::scl` do under these inputs
 //! is a [`Mealy`] machine with few states; two that cannot be told apart are one.
 
+mod absolute;
 pub mod device;
+pub mod identify;
 pub mod master;
 mod mealy;
+pub mod suite;
 
+pub use absolute::{Absolute, Counted};
 pub use mealy::{Edge, Mealy};
 
 use std::fmt::Debug;

@@ -1,6 +1,6 @@
 //! An FS-Master in front of a tester that plays FS-Device, operator and gateway.
 
-use crate::Subject;
+use crate::{Counted, Subject};
 use fsct_protocol::scl::master::Answer;
 use fsct_protocol::scl::{Master, Var};
 use fsct_protocol::spdu::{Control, Status, inv3, succ};
@@ -125,5 +125,13 @@ impl Subject for Bench {
         let (pdout, pdin) = (master.uses_pdout(), master.get(Var::In) == 1);
         *master = master.settled(true);
         (!path.is_empty()).then_some(Output { set_sd, ch_f_ack_req, pdout, pdin })
+    }
+}
+
+impl Counted for Bench {
+    type Seen = Output;
+
+    fn counter(&self) -> u8 {
+        self.master.control().mcount
     }
 }

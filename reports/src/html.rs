@@ -1,6 +1,7 @@
 //! `report.html`: one file, readable without script and without network.
 
 use crate::case_html::{self, Room};
+use crate::complete;
 use crate::coverage_html;
 use crate::decode::Side;
 use crate::duts::Duts;
@@ -58,6 +59,7 @@ pub fn render(run: &Run) -> String {
                     (evidence_html::section(run))
                     (matrix_html::section(run, &summary))
                     (coverage(run, &summary))
+                    (complete::section(&summary))
                     (tolerances(run, &summary))
                     (attention(run, &room))
                     (measured_html::section(run, &room))

@@ -7,6 +7,8 @@
 //! A suite names in its properties `profile`, `dut`, `url` the DUTs its cases are about, one after the other; in a run of several
 //! DUTs each test case has a property `dut` too, with the same text.
 //!
+//! What a complete suite shows, or why it shows nothing, stands in a property `claim FSD-2402` of its suite.
+//!
 //! What was measured stands in properties named by its symbol: `t_RP`, `t_RP.limit`, `t_RP.margin`, `t_RP.uncertainty`; of a
 //! second value of the same symbol `t_RP#2`, `t_RP#2.limit` and so on.
 
@@ -15,7 +17,7 @@ use crate::duts::Duts;
 use crate::journal::Run;
 use crate::record::{CaseRecord, Execution, Header, Verdict};
 use crate::story::{headline, story};
-use crate::summary::{execution_name, verdict_name};
+use crate::summary::{Summary, execution_name, verdict_name};
 use crate::text::{short, visible as clean};
 use quick_junit::{NonSuccessKind, Property, Report, SerializeError, TestCase, TestCaseStatus, TestSuite};
 use std::collections::{BTreeMap, BTreeSet};
@@ -32,6 +34,7 @@ const LEFT_OUT: &str = "not-applicable";
 /// What the writer says.
 pub fn render(run: &Run) -> Result<String, SerializeError> {
     let duts = Duts::of(&run.header);
+    let summary = Summary::of(run);
     let mut suites: BTreeMap<&str, Suite> = BTreeMap::new();
     for case in &run.cases {
         let suite = suites.entry(&case.suite).or_default();
@@ -56,6 +59,11 @@ pub fn render(run: &Run) -> Result<String, SerializeError> {
         meant.into_iter().flat_map(|number| properties(number, duts)).for_each(|(name, value)| {
             suite.add_property(Property::new(name, clean(&value)));
         });
+        for complete in summary.complete.iter().filter(|complete| complete.suite.suite == name) {
+            let of = duts.label(complete.suite.dut).map_or_else(String::new, |dut| format!(" {dut}"));
+            let claim = format!("claim {}{of}", complete.suite.id);
+            suite.add_property(Property::new(clean(&claim), clean(&complete.claim.join(" "))));
+        }
         suite.add_test_cases(cases);
         report.add_test_suite(suite);
     }

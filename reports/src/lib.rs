@@ -6,6 +6,7 @@ pub mod campaign;
 mod case_html;
 mod chart;
 mod compare;
+mod complete;
 mod coverage;
 mod coverage_html;
 pub mod decode;
@@ -33,6 +34,7 @@ mod timing;
 
 pub use asked::Asked;
 pub use compare::Differing;
+pub use complete::Complete;
 pub use coverage::{Coverage, Reached};
 pub use journal::{FILE, Journal, ReadError, Reader, Run, read};
 pub use ladder::{Beside, Ladder, Rung, Way, ladders};

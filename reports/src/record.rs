@@ -53,6 +53,38 @@ pub struct Header {
     /// The scenarios of Annex G that planned cases are about.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub scenarios: Vec<ScenarioInfo>,
+    /// Complete suites of which sequences were planned, each on one DUT.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub complete: Vec<CompleteInfo>,
+}
+
+/// A complete suite: a case whose points are sequences of inputs that together leave no wrong DUT.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CompleteInfo {
+    /// Number of the DUT.
+    pub dut: usize,
+    /// Role of the DUT.
+    pub role: String,
+    /// Suite of the case.
+    pub suite: String,
+    /// Id of the case.
+    pub id: String,
+    /// Edition and mode, `iec2022 crc16`.
+    pub variant: String,
+    /// Whether the value of a counter is part of the state.
+    pub absolute: bool,
+    /// States of the table that can be told apart.
+    pub states: usize,
+    /// States the DUT may have beyond these.
+    pub extra: usize,
+    /// Inputs there are.
+    pub inputs: usize,
+    /// Sequences of the whole suite.
+    pub sequences: usize,
+    /// Inputs of all sequences together.
+    pub length: usize,
+    /// Cases planned: fewer than sequences when a part was asked for, more when each runs several times.
+    pub planned: usize,
 }
 
 /// A scenario or chart of Annex G, in the words of the suite.
@@ -379,6 +411,10 @@ pub struct CaseRecord {
     pub reasons: Vec<Reason>,
     /// Tolerances made use of: id, then what happened.
     pub tolerances: BTreeMap<String, String>,
+    /// In a case of a complete suite: tolerances about what is open that were made use of, so that not everything was as the
+    /// table has it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub open: Vec<String>,
     /// Transitions the DUT went through, `T22` to count.
     pub transitions: BTreeMap<String, u64>,
     /// What of its machine followed what, each once.

@@ -1,6 +1,7 @@
 //! `summary.json`: the run in a few numbers, and the exit code.
 
 use crate::compare::{Comparison, Differing};
+use crate::complete::Complete;
 use crate::coverage::Coverage;
 use crate::decode::Side;
 use crate::journal::{ReadError, Reader, Run};
@@ -24,6 +25,9 @@ pub struct Summary {
     /// How far each machine was led beyond single transitions; empty for a record without goals.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub coverage: Vec<Coverage>,
+    /// What complete suites showed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub complete: Vec<Complete>,
     /// Tolerances made use of, with the number of cases.
     pub tolerances: BTreeMap<String, usize>,
     /// Seed.
@@ -82,6 +86,7 @@ impl Summary {
             execution: EXECUTIONS.map(|execution| (execution_name(execution).to_owned(), 0)).into(),
             transitions: roles.iter().flat_map(|side| side.transitions()).map(|name| (name, 0)).collect(),
             coverage: Coverage::begin(header),
+            complete: Complete::begin(header),
             tolerances: BTreeMap::new(),
             seed: header.seed,
             duts: header.duts.clone(),
@@ -104,6 +109,7 @@ impl Summary {
         if let Some(machine) = self.coverage.iter_mut().find(|machine| machine.role == case.role) {
             machine.add(case);
         }
+        self.complete.iter_mut().for_each(|suite| suite.add(case));
         for tolerance in case.tolerances.keys() {
             *self.tolerances.entry(tolerance.clone()).or_default() += 1;
         }
@@ -111,6 +117,7 @@ impl Summary {
 
     fn end(&mut self, header: &Header, footer: Option<&Footer>, damaged: bool, comparison: Comparison) {
         self.coverage.iter_mut().for_each(|machine| machine.end(header));
+        self.complete.iter_mut().for_each(Complete::end);
         if let Some((compared, differing)) = comparison.end() {
             self.compared = Some(compared);
             self.differing = differing;

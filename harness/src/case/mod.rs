@@ -4,8 +4,10 @@ mod decode;
 pub mod model;
 mod sweep;
 
+pub use decode::steps as decode_steps;
 pub use sweep::{Axis, Binding, Expansion};
 
+use crate::complete::{Complete, MOST};
 use crate::oracle::{Mask, Tolerances};
 use crate::problem::{Problem, Source, suggestion};
 use crate::tree::{self, Fields};
@@ -56,6 +58,10 @@ pub struct Case {
     pub strict: Mask,
     /// Its sweep, in the order of the file.
     pub sweep: Vec<Axis>,
+    /// The complete suite whose sequences are its points.
+    pub complete: Option<Complete>,
+    /// The depth of a run from which on it belongs to it.
+    pub depth: u8,
     /// Start condition, reached and verified first.
     pub start: String,
     /// Transitions that have to happen.
@@ -145,6 +151,8 @@ fn case(
     let features = fields.texts("features");
     let excuses = fields.texts("strict");
     let axes = fields.get("sweep");
+    let complete = fields.get("complete");
+    let depth = fields.optional_number("depth", 0..=9).unwrap_or(0) as u8;
     let start = fields.text("start");
     let steps = fields.get("steps");
     let covers = fields.texts("covers");
@@ -190,9 +198,20 @@ fn case(
         }
     }
     let sweep = axes.map(|node| sweep::axes(source, node, problems)).unwrap_or_default();
-    let Some(steps) = steps else {
-        problems.push(Problem::new(source, node.at.clone(), "a case needs `steps`"));
-        return None;
+    let complete = complete.map(|node| (node, role.map(|role| self::complete(source, role, node, problems))));
+    let steps = match (steps, &complete) {
+        (Some(steps), None) => steps.clone(),
+        (None, Some(_)) if axes.is_none() => Node { at: node.at.clone(), value: Value::Null },
+        (_, Some((node, _))) => {
+            let message =
+                "the sequences of `complete` are all points and steps there are: no `sweep` and no `steps` beside it";
+            problems.push(Problem::new(source, node.at.clone(), message));
+            return None;
+        }
+        (None, None) => {
+            problems.push(Problem::new(source, node.at.clone(), "a case needs `steps`"));
+            return None;
+        }
     };
     let (id, at) = id?;
     Some(Case {
@@ -207,12 +226,25 @@ fn case(
         needs: wanted,
         strict,
         sweep,
+        complete: complete.and_then(|(_, complete)| complete),
+        depth,
         start: start?.0,
         covers: transitions,
-        steps: steps.clone(),
+        steps,
         source: source.clone(),
         at,
     })
+}
+
+const COUNTERS: &[(bool, &str)] = &[(false, "relative"), (true, "absolute")];
+
+/// `{extra: 1, counters: absolute}`.
+fn complete(source: &Arc<Source>, role: Role, node: &Node, problems: &mut Vec<Problem>) -> Complete {
+    let mut fields = Fields::new(source, node, "`complete`", problems);
+    let extra = fields.optional_number("extra", 0..=MOST as u64).unwrap_or(0) as usize;
+    let absolute = fields.optional_word("counters", COUNTERS).unwrap_or(false);
+    fields.finish(problems);
+    Complete { role, extra, absolute }
 }
 
 fn is_case_id(id: &str) -> bool {
@@ -264,6 +296,9 @@ impl Start {
 impl Case {
     /// The typed steps for one point of the sweep.
     pub fn steps(&self, binding: &Binding, problems: &mut Vec<Problem>) -> Vec<Step> {
+        if let Some(complete) = self.complete {
+            return complete.steps(&self.source, &self.at, binding, problems);
+        }
         let mut used = BTreeSet::new();
         let steps = self.substitute(&self.steps, binding, &mut used, problems);
         for axis in self.sweep.iter().filter(|axis| !axis.is_of_the_dut() && !used.contains(&axis.name)) {
@@ -319,7 +354,11 @@ impl Case {
     /// # Errors
     /// A [`Problem`] when the sweep is too large.
     pub fn expand(&self, offers: &[fsct_adapters::Offer]) -> Result<Expansion, Problem> {
-        sweep::expand(&self.source, &self.sweep, offers)
+        let of_the_sweep = |offers: &[fsct_adapters::Offer]| sweep::expand(&self.source, &self.sweep, offers);
+        match self.complete {
+            Some(complete) => complete.expand(offers, of_the_sweep),
+            None => of_the_sweep(offers),
+        }
     }
 }
 

@@ -34,7 +34,7 @@ pub fn steps(turns: &[Turn]) -> Vec<Told> {
         }
         if turn.device_expired() {
             expiries += 1;
-            let expect = expected(&turn.device_before, &turn.device, &turn.device_path);
+            let expect = expected(&turn.device_before, &turn.device, &turn.device_path, false);
             steps.push(Told { path: turn.device_path, ..told(wait(expiries, "lost"), expect) });
             continue;
         }
@@ -61,7 +61,7 @@ pub fn steps(turns: &[Turn]) -> Vec<Told> {
         let told_apart =
             turn.device_before.state() == State(21) || turn.device_before.status().dcount_i != inv3(arrived.0.mcount);
         let expect = match told_apart {
-            true => expected(&turn.device_before, &turn.device, &turn.device_path),
+            true => expected(&turn.device_before, &turn.device, &turn.device_path, false),
             false => Vec::new(),
         };
         let error = turn.device.get(Var::CommErr) == 1;

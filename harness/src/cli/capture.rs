@@ -98,6 +98,7 @@ fn execute(args: &Args) -> Result<u8, u8> {
         matrix: Vec::new(),
         evidence: None,
         scenarios: Vec::new(),
+        complete: Vec::new(),
     };
     let interrupted = AtomicBool::new(false);
     let run = Run {

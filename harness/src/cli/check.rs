@@ -41,7 +41,9 @@ pub fn run(args: &Args) -> u8 {
         return show(&problems);
     }
     let cases = library.cases().count();
-    let points: usize = library.cases().map(|case| case.expand(&EVERYTHING).map_or(0, |all| all.points.len())).sum();
+    // Sequences of complete suites are made, not written.
+    let written = library.cases().filter(|case| case.complete.is_none());
+    let points: usize = written.map(|case| case.expand(&EVERYTHING).map_or(0, |all| all.points.len())).sum();
     print(format!("{cases} cases, {points} points of their sweeps, {} start conditions: sound", library.starts.len()));
     print(format!("{} limits: sound", library.limits.limits.iter().count()));
     let records = library.ledger.iter().count();

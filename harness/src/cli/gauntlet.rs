@@ -1,7 +1,8 @@
 //! `fsct gauntlet`: every mutant of the reference DUTs against the suites.
 
-use super::{Cases, RIG, fail, print, show};
-use crate::gauntlet::matrix;
+use super::{Cases, RIG, USAGE, fail, print, show};
+use crate::gauntlet::{matrix, matrix_of};
+use crate::problem::suggestion;
 use fsct_adapters::Role;
 use fsct_reports::gauntlet::{Gauntlet, Matrix};
 use indicatif::ProgressBar;
@@ -18,6 +19,13 @@ pub struct Args {
     /// Only mutants of this role: device or master
     #[arg(long)]
     role: Option<Side>,
+    /// Only cases of this suite or group; may be repeated. Without it all but the complete suites, which are worth a look by
+    /// themselves: --suite complete
+    #[arg(long, value_name = "NAME")]
+    suite: Vec<String>,
+    /// How deep, as for `fsct run`; with --suite
+    #[arg(long, value_name = "N", default_value_t = 0, requires = "suite", value_parser = clap::value_parser!(u8).range(0..=2))]
+    depth: u8,
     /// Print the matrix as JSON
     #[arg(long)]
     json: bool,
@@ -41,12 +49,21 @@ pub fn run(args: &Args) -> u8 {
 
 fn execute(args: &Args) -> Result<u8, u8> {
     let library = args.cases.load()?;
+    if let Some(unknown) = args.suite.iter().find(|suite| library.names().all(|known| known != suite.as_str())) {
+        let help = suggestion(unknown, library.names());
+        return Err(fail(USAGE, format!("there is no suite `{unknown}`; {help}")));
+    }
     let begin = Instant::now();
     let bar = if std::io::stderr().is_terminal() { ProgressBar::new_spinner() } else { ProgressBar::hidden() };
     let mut roles = Vec::new();
     for (side, role) in [(Side::Device, Role::Device), (Side::Master, Role::Master)] {
         if args.role.is_none_or(|wanted| wanted == side) {
-            roles.push(matrix(&library, role, &|| bar.inc(1)).map_err(|problem| show(&[problem]))?);
+            let done = || bar.inc(1);
+            let made = match args.suite.as_slice() {
+                [] => matrix(&library, role, &done),
+                suites => matrix_of(&library, role, suites, args.depth, &done),
+            };
+            roles.push(made.map_err(|problem| show(&[problem]))?);
         }
     }
     bar.finish_and_clear();
@@ -57,10 +74,19 @@ fn execute(args: &Args) -> Result<u8, u8> {
     if args.json {
         print(gauntlet.json().trim_end());
     } else {
-        gauntlet.roles.iter().for_each(tell);
+        gauntlet.roles.iter().for_each(if args.suite.is_empty() { tell } else { tell_killed });
         print(format!("{:.1} s · matrix: {}", gauntlet.seconds, args.out.join("gauntlet.html").display()));
     }
     Ok(if gauntlet.is_clean() { 0 } else { LACKING })
+}
+
+/// What suites kill by themselves, whatever clause they judge.
+fn tell_killed(matrix: &Matrix) {
+    let (killed, alive): (Vec<_>, Vec<_>) = matrix.mutants.iter().partition(|mutant| !mutant.killed_by.is_empty());
+    print(format!("{}: {} of {} mutants killed", matrix.role, killed.len(), matrix.mutants.len()));
+    for mutant in alive {
+        print(format!("  not killed: {} ({})", mutant.name, mutant.clause));
+    }
 }
 
 fn tell(matrix: &Matrix) {

@@ -15,6 +15,9 @@ pub struct Args {
     /// Every point of every sweep
     #[arg(long)]
     expanded: bool,
+    /// How deep, as for `fsct run`
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(0..=2))]
+    depth: u8,
     #[command(flatten)]
     cases: Cases,
 }
@@ -25,7 +28,7 @@ pub fn run(args: &Args) -> u8 {
         Ok(library) => library,
         Err(code) => return code,
     };
-    let selection = Selection { filter: args.filter.clone(), ..Selection::default() };
+    let selection = Selection { filter: args.filter.clone(), depth: args.depth, ..Selection::default() };
     let mut planned = Vec::new();
     for role in [Role::Device, Role::Master] {
         let Some(profile) = library.profiles.get(&default_profile(role)) else {
@@ -43,7 +46,8 @@ pub fn run(args: &Args) -> u8 {
             let selected = planned.iter().filter(|one| one.case.id == case.id).count();
             if selected > 0 {
                 let points = case.expand(&EVERYTHING).map_or(0, |all| all.points.len());
-                print(format!("{}  {points:>4} x  {:<20} {}", case.id, case.suite, case.title));
+                let depth = if case.depth > 1 { format!(" (--depth {})", case.depth) } else { String::new() };
+                print(format!("{}  {points:>4} x  {:<20} {}{depth}", case.id, case.suite, case.title));
             }
         }
     }

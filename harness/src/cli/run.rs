@@ -3,6 +3,7 @@
 use super::{Cases, RIG, USAGE, bench, colour, fail, print, show};
 use crate::annex_i;
 use crate::campaign::{Bench, Judges, Run, dut_info};
+use crate::complete;
 use crate::coverage::Coverage;
 use crate::library::Library;
 use crate::matrix::GROUP;
@@ -11,7 +12,7 @@ use crate::plan::{Plan, Selection, plan, unreached};
 use crate::problem::suggestion;
 use crate::profile::{Profile, default_profile};
 use crate::yaml;
-use fsct_adapters::{Address, Description, DutError, Offer, Role, Variant};
+use fsct_adapters::{Address, ClockKind, Description, DutError, Offer, Role, Variant};
 use fsct_iodd::Declaration;
 use fsct_protocol::Edition;
 use fsct_reports::record::{CaseRecord, DutInfo, Execution, Footer, Header, MatrixInfo, SCHEMA, ScenarioInfo, Verdict};
@@ -26,6 +27,9 @@ use std::time::{Duration, Instant};
 
 /// Failures told on the terminal; the rest is in the reports.
 const TOLD: usize = 10;
+
+/// How deep a run goes on a virtual clock unless the user says so.
+const DEPTH: u8 = 1;
 
 /// Arguments of `fsct run`.
 #[derive(clap::Args, Debug)]
@@ -59,6 +63,9 @@ pub struct Args {
     /// On a real clock, cases with an FSP_Watchdog above 1 s as well: they take minutes
     #[arg(long)]
     long: bool,
+    /// How deep: 0, 1 or 2 states a DUT may have beyond the table, see docs/complete.md [default: 1, 0 on a real clock]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=2))]
+    depth: Option<u8>,
     /// Seed that everything random derives from
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -123,6 +130,7 @@ fn execute(args: &Args) -> Result<u8, u8> {
         shard: args.shard,
         repeat: args.repeat,
         long: args.long,
+        depth: 0,
     };
     for suite in &args.suites {
         if is_file(suite) {
@@ -177,6 +185,8 @@ fn execute(args: &Args) -> Result<u8, u8> {
         return Err(fail(USAGE, said));
     }
     let planned = |one: &Candidate<'_>| {
+        let usual = if one.description.clock.kind == ClockKind::Real { 0 } else { DEPTH };
+        let selection = Selection { depth: args.depth.unwrap_or(usual), ..selection.clone() };
         plan(&library, &selection, one.profile, &one.description).map_err(|problem| show(&[problem]))
     };
     let mut plans: Vec<Plan<'_>> = candidates.iter().map(planned).collect::<Result<_, _>>()?;
@@ -210,6 +220,7 @@ fn execute(args: &Args) -> Result<u8, u8> {
             .filter(|_| args.suites.iter().any(|suite| suite == annex_i::NAME))
             .map(|annex| annex.evidence(&library.ledger, |name| library.members(name))),
         scenarios: scenarios(&library, &plans),
+        complete: plans.iter().enumerate().flat_map(|(dut, plan)| complete::planned(dut, plan)).collect(),
     };
     let interrupted = Arc::new(AtomicBool::new(false));
     for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
@@ -398,6 +409,9 @@ fn command(args: &Args, url: &str, profile: &Profile) -> String {
     if args.long {
         command += " --long";
     }
+    if let Some(depth) = args.depth {
+        command += &format!(" --depth {depth}");
+    }
     for id in &args.strict {
         command += &format!(" --strict {id}");
     }
@@ -571,6 +585,7 @@ fn conclude(args: &Args, no_fs_master: &[&str], plans: &[Plan<'_>], summary: &Su
         summary.seed
     ));
     in_a_row(summary);
+    summary.complete.iter().for_each(|suite| print(visible(&suite.said())));
     let not_applicable: usize = plans.iter().map(|plan| plan.not_applicable.len()).sum();
     if not_applicable > 0 {
         print(format!("{not_applicable} not applicable, with the reason in the report"));

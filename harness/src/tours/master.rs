@@ -11,7 +11,14 @@ use fsct_protocol::spdu::{Status, inv3, succ};
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Stimulus {
     /// A good answer.
-    Good { sd_set: bool, ack: bool, set_sd: bool },
+    Good {
+        /// SDset.
+        sd_set: bool,
+        /// ChFAck_C.
+        ack: bool,
+        /// setSD_C.
+        set_sd: bool,
+    },
     /// The FS-Device reports a timeout.
     Dtimeout,
     /// The FS-Device reports a CommErr.
@@ -24,11 +31,17 @@ pub enum Stimulus {
     Foreign,
     /// The counter of the answer before.
     Same,
+    /// This DCount_i with the octets of the answer before.
+    Again(u8),
+    /// All octets 0.
+    AllZero,
+    /// No answer at all for an exchange.
+    Nothing,
     /// Nothing but this until MTimer has expired.
     Timeout(&'static str),
 }
 
-use Stimulus::{Corrupt, DcommErr, Dtimeout, Foreign, Good, Plain, Same, Timeout};
+use Stimulus::{Again, AllZero, Corrupt, DcommErr, Dtimeout, Foreign, Good, Nothing, Plain, Same, Timeout};
 
 /// The machine, and the counter of the answer before.
 #[derive(Copy, Clone, PartialEq, Eq, Hash)]
@@ -84,6 +97,8 @@ impl Subject for Bench {
                 Some(dcount_i) => Answer { status: Status { dcount_i: *dcount_i, ..plain }, intact: true },
                 None => return (Path::default(), false),
             },
+            Again(dcount_i) => Answer { status: Status { dcount_i, ..plain }, intact: true },
+            AllZero | Nothing => return (Path::default(), false),
             Timeout(_) => return (master.expire(), false),
         };
         *sent = Some(answer.status.dcount_i);
@@ -92,8 +107,26 @@ impl Subject for Bench {
     }
 }
 
-/// A tour as steps of a case.
-fn steps(tour: &[Stimulus]) -> Vec<Told> {
+/// What is done, as a step of a case. `expiries` are those since the answer sent last.
+fn action(stimulus: Stimulus, expiries: usize) -> String {
+    match stimulus {
+        Good { sd_set: false, .. } => "exchange: {}".to_owned(),
+        Good { .. } => "exchange: {SDset: 1}".to_owned(),
+        Dtimeout => "exchange: {SDset: 1, DTimeout: 1}".to_owned(),
+        DcommErr => "exchange: {SDset: 1, DCommErr: 1}".to_owned(),
+        Corrupt(field) => format!("exchange: {{corrupt: {field}}}"),
+        Plain => "exchange: {PortNum: plain}".to_owned(),
+        Foreign => "exchange: {DCount_i: +2}".to_owned(),
+        Same => "exchange: {DCount_i: same, PDin: same}".to_owned(),
+        Again(dcount_i) => format!("exchange: {{DCount_i: {dcount_i}, PDin: same}}"),
+        AllZero => "exchange: {image: zero, repeat: 2}".to_owned(),
+        Nothing => "exchange: {image: lost, repeat: 2}".to_owned(),
+        Timeout(link) => wait(expiries.max(1), link),
+    }
+}
+
+/// A sequence of stimuli as steps of a case. What a tolerance leaves free is not expected. `absolute`: counters as numbers.
+pub fn steps(tour: &[Stimulus], absolute: bool) -> Vec<Told> {
     let (mut bench, _) = Bench::waiting();
     let mut expiries = 0;
     let (mut acked, mut stopped) = (false, false);
@@ -105,22 +138,13 @@ fn steps(tour: &[Stimulus]) -> Vec<Told> {
         let control = master.control();
         let expired = matches!(stimulus, Timeout(_));
         // An SPDU that looks like the one before does not show when it was made: the wait counts from the one seen first.
-        expiries = match expired {
-            true if before.control() == control => expiries + 1,
-            true => 1,
-            false => 0,
+        expiries = match (expired, stimulus) {
+            (true, _) if before.control() == control => expiries + 1,
+            (true, _) => 1,
+            (false, AllZero | Nothing) => expiries,
+            (false, _) => 0,
         };
-        let action = match stimulus {
-            Good { sd_set: false, .. } => "exchange: {}".to_owned(),
-            Good { .. } => "exchange: {SDset: 1}".to_owned(),
-            Dtimeout => "exchange: {SDset: 1, DTimeout: 1}".to_owned(),
-            DcommErr => "exchange: {SDset: 1, DCommErr: 1}".to_owned(),
-            Corrupt(field) => format!("exchange: {{corrupt: {field}}}"),
-            Plain => "exchange: {PortNum: plain}".to_owned(),
-            Foreign => "exchange: {DCount_i: +2}".to_owned(),
-            Same => "exchange: {DCount_i: same, PDin: same}".to_owned(),
-            Timeout(link) => wait(expiries.max(1), link),
-        };
+        let action = action(*stimulus, expiries);
         let mut set = Vec::new();
         if told.is_empty() {
             set.push("PDout_M: pattern".to_owned());
@@ -133,22 +157,34 @@ fn steps(tour: &[Stimulus]) -> Vec<Told> {
             set.push(format!("setSD_C: {}", u8::from(set_sd)));
         }
         (acked, stopped) = (ack, set_sd);
-        let expect = expected(master, &path);
         let before = if set.is_empty() { Vec::new() } else { vec![format!("app: {{{}}}", set.join(", "))] };
+        let expect = match path.is_empty() {
+            true => vec![
+                "image: unchanged".to_owned(),
+                "app.PDin_M: unchanged".to_owned(),
+                format!("app.ChFAckReq_S: {}", master.get(Var::ChFAckReqS)),
+            ],
+            false => expected(master, &path, absolute),
+        };
         told.push(Told { before, action, expect, path, error });
     }
     told
 }
 
-/// What is expected of an FS-Master that has gone this way. What a tolerance leaves free is not.
-pub fn expected(master: &Master, path: &Path) -> Vec<String> {
+/// What is expected of an FS-Master that has gone this way, `absolute`: its counter as a number. What a tolerance leaves free is not.
+pub fn expected(master: &Master, path: &Path, absolute: bool) -> Vec<String> {
     let took = |numbers: &[u8]| path.iter().any(|t| numbers.contains(&t.0));
     let (expired, restarted) = (took(&[8, 14]), took(&[11]));
     let control = master.control();
     let bit = u8::from;
     let data = |live: bool| if live { "live" } else { "safe" };
+    let mcount = match (absolute, expired) {
+        (true, _) => control.mcount.to_string(),
+        (false, true) => "0".to_owned(),
+        (false, false) => "next".to_owned(),
+    };
     let mut expect = vec![
-        format!("MCount: {}", if expired { "0" } else { "next" }),
+        format!("MCount: {mcount}"),
         format!("setSD: {}", bit(control.set_sd)),
         format!("ChFAckReq: {}", bit(control.ch_f_ack_req)),
     ];
@@ -169,5 +205,5 @@ pub fn expected(master: &Master, path: &Path) -> Vec<String> {
 
 /// The tours.
 pub fn tours() -> Vec<Vec<Told>> {
-    super::tours::<Bench>().iter().map(|tour| steps(tour)).collect()
+    super::tours::<Bench>().iter().map(|tour| steps(tour, false)).collect()
 }

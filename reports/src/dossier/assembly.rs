@@ -212,6 +212,7 @@ fn together(tool: &Tool, sources: &[Source], product: &Identity) -> (Run, Vec<Se
         matrix: Vec::new(),
         evidence: None,
         scenarios: Vec::new(),
+        complete: Vec::new(),
     };
     let (mut cases, mut seats): (Vec<CaseRecord>, Vec<Seat>) = Default::default();
     let of_role = |key: &str| {
@@ -232,6 +233,11 @@ fn together(tool: &Tool, sources: &[Source], product: &Identity) -> (Run, Vec<Se
             }
         }
         let told = &run.header;
+        let complete = told.complete.iter().filter_map(|suite| {
+            let at = own.iter().position(|seat| seat.dut == suite.dut)?;
+            Some(CompleteInfo { dut: from + at, ..suite.clone() })
+        });
+        header.complete.extend(complete);
         header.not_applicable.extend(told.not_applicable.iter().filter(|(key, _)| of_role(key)).cloned());
         header.tolerances.extend(told.tolerances.clone());
         let machines = told.machines.iter().filter(|machine| machine.role == product.role);

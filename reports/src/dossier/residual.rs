@@ -159,6 +159,7 @@ fn drawn(code: &Code) -> Markup {
         y: (highest * 1e-16, highest),
         curves: code.lengths.iter().take(LENGTHS).map(curve).collect(),
         bounds: bounds.into_iter().chain(stated).collect(),
+        measured: Vec::new(),
     };
     let alt = format!("Residual error probability of CRC-{} over the bit error probability", code.width);
     html! { img.plot alt=(alt) src=(format!("data:image/svg+xml,{}", escaped(&plots(&[plot])))); }

@@ -20,6 +20,7 @@ pub fn header(planned: usize) -> Header {
         matrix: Vec::new(),
         evidence: None,
         scenarios: Vec::new(),
+        complete: Vec::new(),
     }
 }
 
@@ -89,6 +90,7 @@ pub fn passed(number: usize) -> CaseRecord {
         execution: Execution::Ok,
         reasons: Vec::new(),
         tolerances: BTreeMap::new(),
+        open: Vec::new(),
         transitions: BTreeMap::from([("T21".into(), 1), ("T22".into(), 2)]),
         walked: Walked::default(),
         start: "waiting".into(),
