@@ -13,10 +13,13 @@ pub const RANDOM: &str = "fsct-campaign-random/2";
 /// Schema of [`Records`].
 pub const RECORDS: &str = "fsct-campaign-record/2";
 
+/// Schema of [`Noise`].
+pub const NOISE: &str = "fsct-campaign-noise/1";
+
 /// What every campaign says first.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Head {
-    /// [`BITS`], [`RANDOM`] or [`RECORDS`].
+    /// [`BITS`], [`RANDOM`], [`RECORDS`] or [`NOISE`].
     pub schema: String,
     /// Version of fsct.
     pub fsct: String,
@@ -137,4 +140,48 @@ pub struct RecordsRow {
     pub refused: u64,
     /// The record that started the SCL, in hexadecimal; `None`: none did.
     pub failed: Option<String>,
+}
+
+/// Bits wrong by chance on the way to the DUT: `fsct campaign noise`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Noise {
+    /// Schema, version, seed, DUT.
+    #[serde(flatten)]
+    pub head: Head,
+    /// What each interval holds the true value with, 0 to 1.
+    pub confidence: f64,
+    /// One row a length and bit error probability.
+    pub rows: Vec<NoiseRow>,
+    /// What the DUT did with an SPDU that it judged against its signature; `None`: it judged all by it.
+    pub failed: Option<String>,
+}
+
+/// One length at one bit error probability.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NoiseRow {
+    /// Octets of the SPDU.
+    pub octets: usize,
+    /// Probability that a bit is wrong.
+    pub bit_error_probability: f64,
+    /// SPDUs sent.
+    pub spdus: u64,
+    /// Those with at least one wrong bit.
+    pub corrupted: u64,
+    /// Of these, how many the DUT took for good.
+    pub undetected: u64,
+    /// Exchanges it took.
+    pub exchanges: u64,
+    /// Undetected of all SPDUs.
+    pub measured: f64,
+    /// Ends of the interval around it.
+    pub interval: (f64, f64),
+    /// The exact residual error probability.
+    pub exact: f64,
+}
+
+impl NoiseRow {
+    /// Whether the exact value lies in the interval.
+    pub fn agrees(&self) -> bool {
+        (self.interval.0..=self.interval.1).contains(&self.exact)
+    }
 }

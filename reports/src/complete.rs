@@ -152,16 +152,21 @@ impl Complete {
 /// The part of the report.
 pub fn section(summary: &Summary) -> Markup {
     html! {
-        @if !summary.complete.is_empty() {
-            h2 { "Complete suites" }
-            @for suite in summary.complete.iter().take(LISTED) {
-                h3 {
-                    span.word { @if suite.is_shown() { "✓ " } @else { "– " } (short(&suite.suite.id, NAME)) }
-                    " · " (suite.name()) " · " (suite.suite.states) " states and " (suite.suite.extra) " more · counters "
-                    @if suite.suite.absolute { "absolute" } @else { "relative" }
-                }
-                @for sentence in &suite.claim { p { (sentence) } }
+        @if !summary.complete.is_empty() { h2 { "Complete suites" } }
+        (claims(summary))
+    }
+}
+
+/// What each suite shows.
+pub fn claims(summary: &Summary) -> Markup {
+    html! {
+        @for suite in summary.complete.iter().take(LISTED) {
+            h3 {
+                span.word { @if suite.is_shown() { "✓ " } @else { "– " } (short(&suite.suite.id, NAME)) }
+                " · " (suite.name()) " · " (suite.suite.states) " states and " (suite.suite.extra) " more · counters "
+                @if suite.suite.absolute { "absolute" } @else { "relative" }
             }
+            @for sentence in &suite.claim { p { (sentence) } }
         }
     }
 }

@@ -7,7 +7,7 @@ use super::source::{Piece, Source};
 use super::tool::Tool;
 use super::trace::Trace;
 use crate::journal::Run;
-use crate::record::{CaseRecord, DutInfo, Footer, Header, SCHEMA};
+use crate::record::{CaseRecord, CompleteInfo, DutInfo, Footer, Header, SCHEMA};
 use crate::summary::Summary;
 use crate::text::short;
 use std::collections::BTreeSet;
@@ -171,6 +171,7 @@ pub fn duts(source: &Source) -> &[DutInfo] {
         Piece::Bits(bits) => std::slice::from_ref(&bits.head.dut),
         Piece::Random(random) => std::slice::from_ref(&random.head.dut),
         Piece::Records(records) => std::slice::from_ref(&records.head.dut),
+        Piece::Noise(noise) => std::slice::from_ref(&noise.head.dut),
         Piece::Gauntlet(_) | Piece::Proof(_) | Piece::Residual(_) => &[],
     }
 }

@@ -48,6 +48,7 @@ fn holds(source: &Source) -> Markup {
             Piece::Bits(one) => { "Campaign of corruptions, " (one.rows.len()) " rows" }
             Piece::Random(one) => { "Campaign of random faults, " (one.exchanges) " exchanges" }
             Piece::Records(one) => { "Campaign on FSP_VerifyRecord, " (one.rows.len()) " rows" }
+            Piece::Noise(one) => { "Campaign of bits wrong by chance, " (one.rows.len()) " rows" }
             Piece::Gauntlet(one) => { "Kill matrix: " @for (place, matrix) in one.roles.iter().enumerate() { @if place > 0 { ", " } (matrix.mutants.len()) " mutants of the " (crate::html::role(&matrix.role)) } }
             Piece::Proof(one) => { "Explorations of the tables: " (one.len()) }
             Piece::Residual(one) => { "Residual error of " (one.codes.len()) " signatures" }

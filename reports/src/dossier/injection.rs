@@ -1,8 +1,9 @@
 //! Simulation with fault injection: the error matrix of a run, and campaigns.
 
+use super::noise;
 use super::page::{NAME, absent, cite, cite_all, number};
 use super::{Dossier, Gap, Kind, Piece, Section};
-use crate::campaign::{Bits, Counts, Head, Random, Records};
+use crate::campaign::{Bits, Counts, Head, Noise, Random, Records};
 use crate::matrix_html;
 use crate::text::short;
 use maud::{Markup, html};
@@ -20,6 +21,8 @@ pub fn section(dossier: &Dossier<'_>) -> Section {
         dossier.pieces(|piece| if let Piece::Random(one) = piece { Some(one) } else { None }).collect();
     let records: Vec<(usize, &Records)> =
         dossier.pieces(|piece| if let Piece::Records(one) = piece { Some(one) } else { None }).collect();
+    let noise: Vec<(usize, &Noise)> =
+        dossier.pieces(|piece| if let Piece::Noise(one) = piece { Some(one) } else { None }).collect();
     let mut missing = |is: bool, what: &str, command: &str| {
         let (markup, gap) = absent(what, command);
         if is {
@@ -48,9 +51,15 @@ pub fn section(dossier: &Dossier<'_>) -> Section {
         "a campaign on FSP_VerifyRecord",
         "fsct campaign record --dut URL --out DIR",
     );
+    let no_noise = missing(
+        noise.is_empty(),
+        "a campaign of bits wrong by chance beside the exact residual error",
+        "fsct campaign noise --dut URL --out DIR",
+    );
     bits.iter().for_each(|(source, one)| gaps.extend(gaps_of_bits(*source, one)));
     random.iter().for_each(|(source, one)| gaps.extend(gaps_of_random(*source, one)));
     records.iter().for_each(|(source, one)| gaps.extend(gaps_of_records(*source, one)));
+    noise.iter().for_each(|(source, one)| gaps.extend(noise::gaps(*source, one)));
     let body = html! {
         p {
             "Errors are brought in on the line between the product and a conformant partner, with the oracle on every exchange. "
@@ -67,6 +76,9 @@ pub fn section(dossier: &Dossier<'_>) -> Section {
         h3 { "Every corruption of so many bits" }
         (no_bits)
         @for (source, one) in &bits { (bits_of(*source, one)) }
+        h3 { "Bits wrong by chance" }
+        (no_noise)
+        @for (source, one) in &noise { (told(*source, &one.head)) (noise::shown(one)) }
         @if device {
             h3 { "Every corruption of FSP_VerifyRecord" }
             (no_records)

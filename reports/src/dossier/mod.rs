@@ -13,6 +13,7 @@ mod gaps;
 mod injection;
 mod management;
 mod modelling;
+mod noise;
 mod page;
 mod product;
 mod residual;

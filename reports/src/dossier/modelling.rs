@@ -29,6 +29,7 @@ pub fn section(dossier: &Dossier<'_>) -> Section {
             "Records: " (cite_all(dossier.runs()))
         }
         @for part in parts { (part) }
+        (crate::complete::claims(&dossier.summary))
     };
     Section { body, gaps }
 }

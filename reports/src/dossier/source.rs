@@ -1,7 +1,7 @@
 //! The files a dossier is made from: found, read, and named by their hash. Nothing is judged here.
 
 use super::document::{PROOF, Proof, RESIDUAL, Residual};
-use crate::campaign::{self, BITS, Bits, RANDOM, RECORDS, Random, Records};
+use crate::campaign::{self, BITS, Bits, NOISE, Noise, RANDOM, RECORDS, Random, Records};
 use crate::gauntlet::{self, Gauntlet};
 use crate::journal::{self, ReadError, Reader};
 use crate::record::{CaseRecord, Execution, Header, SCHEMA, Verdict};
@@ -50,6 +50,8 @@ pub enum Piece {
     Random(Random),
     /// `fsct campaign record`.
     Records(Records),
+    /// `fsct campaign noise`.
+    Noise(Noise),
     /// `fsct gauntlet`.
     Gauntlet(Gauntlet),
     /// `fsct prove --json`.
@@ -148,6 +150,7 @@ impl Source {
             Piece::Bits(_) => BITS,
             Piece::Random(_) => RANDOM,
             Piece::Records(_) => RECORDS,
+            Piece::Noise(_) => NOISE,
             Piece::Gauntlet(_) => gauntlet::SCHEMA,
             Piece::Proof(_) => PROOF,
             Piece::Residual(_) => RESIDUAL,
@@ -207,6 +210,7 @@ fn document(path: &Path, sha256: String) -> Result<Source, SourceError> {
         BITS => as_is(value).map(Piece::Bits),
         RANDOM => as_is(value).map(Piece::Random),
         RECORDS => as_is(value).map(Piece::Records),
+        NOISE => as_is(value).map(Piece::Noise),
         gauntlet::SCHEMA => as_is(value).map(Piece::Gauntlet),
         PROOF => as_is(value).map(Piece::Proof),
         RESIDUAL => as_is(value).map(Piece::Residual),
@@ -215,9 +219,10 @@ fn document(path: &Path, sha256: String) -> Result<Source, SourceError> {
     };
     let piece = read.map_err(|error| wrong(format!("it is no sound record of the schema `{schema}` ({error})")))?;
     let (fsct, seed) = match &piece {
-        Piece::Bits(Bits { head, .. }) | Piece::Random(Random { head, .. }) | Piece::Records(Records { head, .. }) => {
-            (head.fsct.clone(), Some(head.seed))
-        }
+        Piece::Bits(Bits { head, .. })
+        | Piece::Random(Random { head, .. })
+        | Piece::Records(Records { head, .. })
+        | Piece::Noise(Noise { head, .. }) => (head.fsct.clone(), Some(head.seed)),
         Piece::Gauntlet(gauntlet) => (gauntlet.fsct.clone(), None),
         Piece::Proof(proofs) => (proofs.first().map_or_else(String::new, |proof| proof.fsct.clone()), None),
         Piece::Residual(residual) => (residual.fsct.clone(), None),

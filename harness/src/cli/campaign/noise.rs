@@ -9,9 +9,9 @@ use crate::injection::noise::{Noise, Tried, sweep};
 use crate::injection::{Finding, Halt, Target};
 use fsct_adapters::{Address, Role, Variant};
 use fsct_protocol::{Edition, ProtMode};
+use fsct_reports::campaign::{self, FILE, NOISE, NoiseRow};
 use fsct_reports::visible;
 use fsct_residual::{CRC_16, Weights, distributions};
-use serde_json::json;
 use std::num::NonZero;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
@@ -60,25 +60,18 @@ struct Point {
 }
 
 /// A point with what was measured.
-pub(super) struct Measured {
-    octets: usize,
-    p: f64,
-    tried: Tried,
-    /// Undetected of all SPDUs, and the interval.
-    fraction: f64,
-    interval: (f64, f64),
-    exact: f64,
-}
-
-impl Measured {
-    fn new(point: &Point, tried: Tried, exact: f64) -> Measured {
-        let fraction = tried.undetected as f64 / tried.spdus as f64;
-        let interval = interval(tried.undetected, tried.spdus, CONFIDENCE);
-        Measured { octets: point.octets, p: point.noise.p, tried, fraction, interval, exact }
-    }
-
-    fn agrees(&self) -> bool {
-        (self.interval.0..=self.interval.1).contains(&self.exact)
+fn row(point: &Point, tried: Tried, exact: f64) -> NoiseRow {
+    let Tried { spdus, corrupted, undetected, exchanges } = tried;
+    NoiseRow {
+        octets: point.octets,
+        bit_error_probability: point.noise.p,
+        spdus,
+        corrupted,
+        undetected,
+        exchanges,
+        measured: undetected as f64 / spdus as f64,
+        interval: interval(undetected, spdus, CONFIDENCE),
+        exact,
     }
 }
 
@@ -100,52 +93,50 @@ pub fn run(args: &Args) -> Result<u8, u8> {
         _ => 1,
     };
     let jobs = args.jobs.map_or(cores, NonZero::get).min(points.len());
+    let head = ground.head(NOISE, args.seed, &first);
+    let mut report = campaign::Noise { head, confidence: CONFIDENCE, rows: Vec::new(), failed: None };
     let swept = sweep_all(&ground, &target, &points, jobs, first);
     // One that was stopped because another one failed says nothing.
     let ended = points.iter().zip(&swept).filter_map(|(point, swept)| Some((point, swept.as_ref().err()?)));
     let halted = ended.min_by_key(|(_, halt)| **halt == Halt::Interrupted);
-    print(HEAD);
-    let mut measured = Vec::new();
+    print(COLUMNS);
     for (point, tried) in points.iter().zip(&swept).filter_map(|(point, swept)| Some((point, swept.as_ref().ok()?))) {
         let exact = weights.iter().find(|weights| weights.octets() == point.octets);
-        let one = Measured::new(point, *tried, exact.map_or(f64::NAN, |weights| weights.residual(point.noise.p)));
-        print(row(&one));
-        measured.push(one);
+        let row = row(point, *tried, exact.map_or(f64::NAN, |weights| weights.residual(point.noise.p)));
+        print(line(&row));
+        report.rows.push(row);
     }
     match halted {
         Some((point, Halt::Failure(finding))) => {
-            write(&ground, args.seed, &measured, Some(finding), &weights)?;
+            report.failed = Some(format!("expected {}, observed {}", finding.expected, finding.observed));
+            write(&ground, &report, &weights)?;
             return Ok(failed(args, point, finding));
         }
         Some((_, halt)) => return Err(Ground::ended(halt)),
         None => {}
     }
-    let plot = write(&ground, args.seed, &measured, None, &weights)?;
+    let plot = write(&ground, &report, &weights)?;
     print(format!("plot     {}", plot.display()));
-    conclude(&measured)
+    conclude(&report.rows)
 }
 
-fn conclude(measured: &[Measured]) -> Result<u8, u8> {
-    let sum = |count: fn(&Tried) -> u64| measured.iter().map(|one| count(&one.tried)).sum::<u64>();
-    let (spdus, undetected) = (sum(|tried| tried.spdus), sum(|tried| tried.undetected));
+fn conclude(rows: &[NoiseRow]) -> Result<u8, u8> {
+    let spdus: u64 = rows.iter().map(|row| row.spdus).sum();
+    let undetected: u64 = rows.iter().map(|row| row.undetected).sum();
     print(format!("interval: holds the true value with {} % confidence (Clopper-Pearson)", 100.0 * CONFIDENCE));
     print("undetected: the signature that arrives is right again, by chance and not by fault of the DUT");
-    let outside = measured.iter().filter(|one| !one.agrees()).count();
+    let outside = rows.iter().filter(|row| !row.agrees()).count();
     if outside > 0 {
-        return Err(fail(
-            INCONCLUSIVE,
-            format!(
-                "{outside} of {} exact values lie outside their interval though the DUT judged each SPDU by its signature; another \
-                 --seed tells whether that was chance",
-                measured.len()
-            ),
-        ));
+        let sentence = format!(
+            "{outside} of {} exact values lie outside their interval though the DUT judged each SPDU by its signature; another \
+             --seed tells whether that was chance",
+            rows.len()
+        );
+        return Err(fail(INCONCLUSIVE, sentence));
     }
     if undetected == 0 {
-        return Err(fail(
-            INCONCLUSIVE,
-            "no corrupted SPDU carried a right signature, so nothing was measured; raise --spdus",
-        ));
+        let sentence = "no corrupted SPDU carried a right signature, so nothing was measured; raise --spdus";
+        return Err(fail(INCONCLUSIVE, sentence));
     }
     print(format!(
         "pass: {spdus} noisy SPDUs, each judged as its signature asks; {undetected} undetected, as often as the exact values say"
@@ -236,37 +227,18 @@ fn sweep_all(
     swept.collect()
 }
 
-const HEAD: &str = "octets      p      SPDUs  corrupted undetected   measured  interval              exact";
+const COLUMNS: &str = "octets      p      SPDUs  corrupted undetected   measured  interval              exact";
 
-fn row(one: &Measured) -> String {
-    let Measured { octets, p, tried, fraction, interval: (low, high), exact } = one;
-    let Tried { spdus, corrupted, undetected, .. } = tried;
-    let outside = if one.agrees() { "" } else { "  outside" };
+fn line(row: &NoiseRow) -> String {
+    let NoiseRow { octets, bit_error_probability: p, spdus, corrupted, undetected, measured, exact, .. } = row;
+    let ((low, high), outside) = (row.interval, if row.agrees() { "" } else { "  outside" });
     format!(
-        "{octets:>6} {p:>6} {spdus:>10} {corrupted:>10} {undetected:>10} {fraction:>10.2E}  {low:>8.2E} to {high:>8.2E} {exact:>10.4E}{outside}"
+        "{octets:>6} {p:>6} {spdus:>10} {corrupted:>10} {undetected:>10} {measured:>10.2E}  {low:>8.2E} to {high:>8.2E} {exact:>10.4E}{outside}"
     )
 }
 
-fn write(
-    ground: &Ground,
-    seed: u64,
-    measured: &[Measured],
-    finding: Option<&Finding>,
-    weights: &[Weights],
-) -> Result<std::path::PathBuf, u8> {
-    let rows = measured.iter().map(|one| {
-        json!({
-            "octets": one.octets, "bit_error_probability": one.p, "spdus": one.tried.spdus,
-            "corrupted": one.tried.corrupted, "undetected": one.tried.undetected, "exchanges": one.tried.exchanges,
-            "measured": one.fraction, "interval": [one.interval.0, one.interval.1], "exact": one.exact,
-            "agrees": one.agrees(),
-        })
-    });
-    let report = json!({
-        "schema": "fsct-campaign-noise/1", "campaign": "noise", "dut": ground.url, "seed": seed, "confidence": CONFIDENCE,
-        "rows": rows.collect::<Vec<_>>(), "failed": finding,
-    });
-    let text = serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
-    ground.write("campaign.json", &text)?;
-    ground.write("noise.svg", &plot::svg(measured, weights))
+fn write(ground: &Ground, report: &campaign::Noise, weights: &[Weights]) -> Result<std::path::PathBuf, u8> {
+    let text = serde_json::to_string_pretty(report).unwrap_or_default() + "\n";
+    ground.write(FILE, &text)?;
+    ground.write("noise.svg", &plot::svg(&report.rows, weights))
 }

@@ -1,7 +1,8 @@
 //! Measured fractions over the exact curves.
 
-use super::{CONFIDENCE, Measured};
-use fsct_reports::{Bound, Curve, Measured as Dot, Plot, plots};
+use super::CONFIDENCE;
+use fsct_reports::campaign::NoiseRow;
+use fsct_reports::{Bound, Curve, Measured, Plot, plots};
 use fsct_residual::Weights;
 
 /// The axes, and points of a curve.
@@ -10,13 +11,13 @@ const Y: (f64, f64) = (1e-8, 1e-3);
 const POINTS: u32 = 200;
 
 /// A drawing for each length.
-pub fn svg(measured: &[Measured], weights: &[Weights]) -> String {
-    plots(&weights.iter().map(|weights| plot(weights, measured)).collect::<Vec<_>>())
+pub fn svg(rows: &[NoiseRow], weights: &[Weights]) -> String {
+    plots(&weights.iter().map(|weights| plot(weights, rows)).collect::<Vec<_>>())
 }
 
-fn plot(weights: &Weights, measured: &[Measured]) -> Plot {
+fn plot(weights: &Weights, rows: &[NoiseRow]) -> Plot {
     let octets = weights.octets();
-    let least = measured.iter().fold(X.0, |least, one| least.min(one.p));
+    let least = rows.iter().fold(X.0, |least, row| least.min(row.bit_error_probability));
     let step = (X.1 / least).powf(1.0 / f64::from(POINTS));
     let at = |number: u32| if number == POINTS { X.1 } else { least * step.powi(number as i32) };
     let curve = Curve {
@@ -25,14 +26,14 @@ fn plot(weights: &Weights, measured: &[Measured]) -> Plot {
         points: (0..=POINTS).map(|number| (at(number), weights.residual(at(number)))).collect(),
         mark: None,
     };
-    let dots = measured.iter().filter(|one| one.octets == octets).map(|one| Dot {
+    let measured = rows.iter().filter(|row| row.octets == octets).map(|row| Measured {
         about: format!(
             "p = {}: {} undetected of {}; exact {:.4E}",
-            one.p, one.tried.undetected, one.tried.spdus, one.exact
+            row.bit_error_probability, row.undetected, row.spdus, row.exact
         ),
-        at: one.p,
-        value: one.fraction,
-        interval: one.interval,
+        at: row.bit_error_probability,
+        value: row.measured,
+        interval: row.interval,
     });
     Plot {
         title: format!("CRC-16, SPDU of {octets} octets: corrupted SPDUs that the DUT took"),
@@ -44,6 +45,6 @@ fn plot(weights: &Weights, measured: &[Measured]) -> Plot {
         y: Y,
         curves: vec![curve],
         bounds: vec![Bound { label: "2^-16".to_owned(), level: weights.limit(), upto: X.1 }],
-        measured: dots.collect(),
+        measured: measured.collect(),
     }
 }
