@@ -5,10 +5,13 @@
 //! is a [`Mealy`] machine with few states; two that cannot be told apart are one.
 
 pub mod device;
+pub mod learn;
 pub mod master;
 mod mealy;
+pub mod seen;
 
 pub use mealy::{Edge, Mealy};
+pub use seen::{Seen, Shown, Side};
 
 use std::fmt::Debug;
 use std::hash::Hash;
