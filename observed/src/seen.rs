@@ -76,6 +76,33 @@ impl Side {
         (0..).zip(self.outputs()).filter(|(bit, _)| shown.0 >> bit & 1 == 1).map(|(_, name)| *name).collect()
     }
 
+    /// What is seen, in words.
+    pub fn told(self, seen: Seen) -> String {
+        let Some(shown) = seen.shown() else { return "nothing new".to_owned() };
+        let names = self.names(shown);
+        let bit = |name: &&str| format!("{name} {}", u8::from(names.contains(name)));
+        let data = |name: &&str| format!("{name} {}", if names.contains(name) { "live" } else { "safe" });
+        let words = |words: Vec<String>| words.join(", ");
+        let (spdu, link, app) = match self {
+            Side::Device => (
+                "answer",
+                words(["SDset", "DCommErr", "DTimeout"].iter().map(bit).collect()),
+                words(vec![data(&"PDout_D"), bit(&"setSD_DC")]),
+            ),
+            Side::Master => ("SPDU", words(vec![bit(&"setSD"), bit(&"ChFAckReq"), data(&"PDout")]), data(&"PDin_M")),
+        };
+        let marks: String = [OTHER_DATA, NOT_INTACT]
+            .iter()
+            .filter(|mark| names.contains(mark))
+            .map(|mark| format!("; {mark}"))
+            .collect();
+        match seen {
+            Seen::Aside(_) => format!("no new {spdu}, but {app}{marks}"),
+            Seen::Astray(_) => format!("{spdu} with another counter: {link}; {app}{marks}"),
+            Seen::Silent | Seen::Answer(_) => format!("{spdu}: {link}; {app}{marks}"),
+        }
+    }
+
     /// The machine of the tables, read by default, with states that look alike merged.
     ///
     /// An FS-Master with MCount 0 that times out sends the same SPDU once more, which nobody can see; so where MCount 0 stands behind

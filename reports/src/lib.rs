@@ -15,6 +15,7 @@ mod histogram;
 mod html;
 mod journal;
 mod junit;
+pub mod learned;
 mod machine;
 mod matrix_html;
 mod measured_html;

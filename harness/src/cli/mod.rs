@@ -12,6 +12,7 @@ mod explain;
 mod gauntlet;
 mod host;
 mod iodd;
+mod learn;
 mod list;
 mod prove;
 mod report;
@@ -73,6 +74,8 @@ enum Command {
     Report(report::Args),
     /// Run every mutant of the reference DUTs against the suites: the kill matrix
     Gauntlet(gauntlet::Args),
+    /// Learn the machine of a DUT as a tester sees it, and say where it is not that of the tables
+    Learn(learn::Args),
     /// Explore both machines of the SCL, as the tables have them, with a black channel that does its worst
     Prove(prove::Args),
     /// Prove the known answers for the CRC signatures
@@ -106,6 +109,7 @@ pub fn main() -> ExitCode {
         Command::Simulate(args) => simulate::run(&args),
         Command::Report(args) => report::run(&args),
         Command::Gauntlet(args) => gauntlet::run(&args),
+        Command::Learn(args) => learn::run(&args),
         Command::Prove(args) => prove::run(&args),
         Command::Vectors(args) => vectors::run(&args),
         Command::Crc(args) => crc::run(&args),
