@@ -26,6 +26,11 @@ impl<'h, 'd> Hand<'h, 'd> {
         self.session
     }
 
+    /// The SPDU the DUT presents; `None`: all zero or nothing.
+    fn image(&self) -> Option<Octets> {
+        self.session.answer().and(self.session.link().image)
+    }
+
     /// New process data, none of the octets 0 but what a declared structure leaves out.
     pub fn pattern(&mut self, length: usize) -> Octets {
         let mut octets = self.tester.pattern(length);
@@ -66,7 +71,7 @@ impl<'h, 'd> Hand<'h, 'd> {
     /// [`Trouble`].
     pub fn offer(&mut self, sets: &[(Service, Octets)], octets: Option<Octets>) -> Result<bool, Trouble> {
         let (cycle, exchanges) = (self.session.profile.master_cycle_time_ns, self.session.profile.answer_latency + 1);
-        let (first, image) = (self.session.now + cycle, self.session.link().image);
+        let (first, image) = (self.session.now + cycle, self.image());
         let last = self.session.now + exchanges * cycle;
         let setup = self.session.setup();
         let early = setup.tick_ns + setup.uncertainty_ns + cycle;
@@ -84,7 +89,7 @@ impl<'h, 'd> Hand<'h, 'd> {
                 (0..exchanges).try_for_each(|_| self.session.exchange(None))?;
             }
         }
-        let changed = self.session.link().image != image;
+        let changed = self.image() != image;
         if changed {
             // DTimer starts with the SPDU that is answered, MTimer with the new one.
             self.since = Some(match self.session.role() {
@@ -104,10 +109,10 @@ impl<'h, 'd> Hand<'h, 'd> {
         let Setup { watchdog_ns, tick_ns, margin_ns, uncertainty_ns, cycle_ns, latency, .. } = *self.session.setup();
         let late = tick_ns + margin_ns + uncertainty_ns + (latency + 1) * cycle_ns;
         let until = self.since.unwrap_or(self.session.now) + watchdog_ns + late;
-        let image = self.session.link().image;
+        let image = self.image();
         sets.iter().try_for_each(|(service, value)| self.session.set(*service, *value))?;
         self.session.exchange_until(until, None)?;
-        let changed = self.session.link().image != image;
+        let changed = self.image() != image;
         if changed {
             self.since = Some(self.session.link().changed_at);
         } else if self.since.is_some() {
