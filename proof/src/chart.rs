@@ -1,8 +1,9 @@
 //! A way through the composition as a sequence chart: one line per exchange.
 
 use crate::exchange::{Fate, Joint, Leg, Step, World, image};
+use crate::learned::{Device, Master};
 use crate::model::Timing;
-use fsct_protocol::scl::{Device, Master, State, Var};
+use fsct_protocol::scl::{State, Var};
 use fsct_protocol::spdu::{Control, Status};
 use std::fmt::Write as _;
 
@@ -109,15 +110,18 @@ fn device_side(device: &Device, leg: &Leg, before: &Device) -> String {
     if device.state() == State(20) {
         return if before.state() == State(20) { "off".to_owned() } else { "power off".to_owned() };
     }
-    let state = format!("{}{}", way(leg), device.state());
+    let state = format!("{}{}", way(leg), device.place());
     let live = device.uses_pdout().then_some("PDout_D");
     words([Some(state.as_str()), leg.pressed.then_some("SDset_DS=1"), live, None])
 }
 
 fn master_side(master: &Master, leg: &Leg) -> String {
-    let state = format!("{}{}", way(leg), master.state());
-    let acknowledged =
-        leg.path.iter().any(|t| t.0 == 10).then_some(if leg.pressed { "ChFAck_C=1" } else { "ChFAck_C=0" });
+    let state = format!("{}{}", way(leg), master.place());
+    let acknowledged = leg.path.iter().any(|t| matches!(t.0, 10 | 11 | 13)).then_some(if leg.pressed {
+        "ChFAck_C=1"
+    } else {
+        "ChFAck_C=0"
+    });
     let live = (master.get(Var::In) == 1).then_some("PDin_M");
     words([Some(state.as_str()), acknowledged, leg.demand.then_some("setSD_C=1"), live])
 }

@@ -2,6 +2,7 @@
 //!
 //! The machines are those of `fsct_protocol::scl`; what stands here is the channel, the power, the operator and the timers.
 
+use crate::learned::{self, Gateway, Product};
 use crate::model::{Model, Reading, Timing};
 use crate::search::Spread;
 use fsct_protocol::scl::device::{Readings, Received};
@@ -33,6 +34,19 @@ pub enum Around {
     /// The link is healthy, the FS-Device has power, nobody demands, and the operator acknowledges as soon as ChFAck_C has been
     /// seen at 0.
     Willing,
+}
+
+impl Around {
+    /// ChFAck_C and setSD_C as they may be; `armed`: ChFAck_C has been seen at 0.
+    pub(crate) fn operator(self, armed: bool) -> impl Iterator<Item = (bool, bool)> {
+        [(false, false), (true, false), (false, true), (true, true)].into_iter().filter(move |(pressed, demand)| {
+            match self {
+                Around::Free => true,
+                Around::Demand => *demand,
+                Around::Willing => !demand && *pressed == armed,
+            }
+        })
+    }
 }
 
 /// A machine's way through one exchange.
@@ -94,12 +108,16 @@ impl<M: Copy + Eq + Hash> Met<M> {
         Met { all: Vec::new(), numbers: HashMap::new() }
     }
 
-    /// The tables have some hundreds of machines; 65536 would mean that one of them counts without end.
+    /// The tables have some hundreds of machines. A product that has too many gets the last number again, and [`Met::is_full`].
     fn number(&mut self, machine: M) -> u16 {
         *self.numbers.entry(machine).or_insert_with(|| {
             self.all.push(machine);
-            (self.all.len() - 1) as u16
+            (self.all.len() - 1).min(u16::MAX.into()) as u16
         })
+    }
+
+    fn is_full(&self) -> bool {
+        self.all.len() > u16::MAX.into()
     }
 }
 
@@ -108,8 +126,8 @@ type Memo<K> = HashMap<K, Rc<[Leg]>, BuildHasherDefault<Spread>>;
 /// The composition: knows what may happen in an exchange.
 pub struct World {
     model: Model,
-    masters: Met<Master>,
-    devices: Met<Device>,
+    masters: Met<learned::Master>,
+    devices: Met<learned::Device>,
     master_legs: Memo<(u16, u8, Option<u8>, Around)>,
     device_legs: Memo<(u16, u8, u8, Around)>,
 }
@@ -135,13 +153,20 @@ impl World {
     pub fn start(&mut self) -> Joint {
         let mut master = Master::new();
         master.start();
-        let off = self.off();
-        Joint {
-            master: self.masters.number(master.settled(false)),
-            device: self.devices.number(off),
-            mtimer: 0,
-            dtimer: 0,
-        }
+        let master = match self.model.master {
+            None => master.settled(false).into(),
+            Some(_) => learned::Master::Learned(Gateway::START),
+        };
+        let off = match self.model.device {
+            None => self.off().into(),
+            Some(_) => learned::Device::Learned(Product::OFF),
+        };
+        Joint { master: self.masters.number(master), device: self.devices.number(off), mtimer: 0, dtimer: 0 }
+    }
+
+    /// Whether there are more machines than numbers: what was met last is not all different.
+    pub(crate) fn is_full(&self) -> bool {
+        self.masters.is_full() || self.devices.is_full()
     }
 
     fn off(&self) -> Device {
@@ -155,12 +180,12 @@ impl World {
     }
 
     /// An FS-Master by its number.
-    pub fn master(&self, number: u16) -> &Master {
+    pub fn master(&self, number: u16) -> &learned::Master {
         &self.masters.all[usize::from(number)]
     }
 
     /// An FS-Device by its number.
-    pub fn device(&self, number: u16) -> &Device {
+    pub fn device(&self, number: u16) -> &learned::Device {
         &self.devices.all[usize::from(number)]
     }
 
@@ -188,9 +213,14 @@ impl World {
         if let Some(legs) = self.device_legs.get(&key) {
             return Rc::clone(legs);
         }
-        let device = *self.device(from.device);
-        let legs = self.devices_after(device, from.dtimer, control, around);
-        let legs: Rc<[Leg]> = distinct(legs, |device| self.devices.number(device));
+        let after = match (*self.device(from.device), &self.model.device) {
+            (learned::Device::Rows(device), _) => either(self.devices_after(device, from.dtimer, control, around)),
+            (learned::Device::Learned(product), Some(machine)) => {
+                either(self.products_after(machine, product, from.dtimer, control, around))
+            }
+            (learned::Device::Learned(_), None) => Vec::new(),
+        };
+        let legs: Rc<[Leg]> = distinct(after, |device| self.devices.number(device));
         self.device_legs.insert(key, Rc::clone(&legs));
         legs
     }
@@ -256,9 +286,14 @@ impl World {
         if let Some(legs) = self.master_legs.get(&key) {
             return Rc::clone(legs);
         }
-        let master = *self.master(from.master);
-        let legs = self.masters_after(master, from.mtimer, returned, around);
-        let legs: Rc<[Leg]> = distinct(legs, |master| self.masters.number(master));
+        let after = match (*self.master(from.master), &self.model.master) {
+            (learned::Master::Rows(master), _) => either(self.masters_after(master, from.mtimer, returned, around)),
+            (learned::Master::Learned(gateway), Some(machine)) => {
+                either(self.gateways_after(machine, gateway, from.mtimer, returned, around))
+            }
+            (learned::Master::Learned(_), None) => Vec::new(),
+        };
+        let legs: Rc<[Leg]> = distinct(after, |master| self.masters.number(master));
         self.master_legs.insert(key, Rc::clone(&legs));
         legs
     }
@@ -270,15 +305,7 @@ impl World {
             .iter()
             .any(|reading| self.model.reads(*reading));
         for fate in fates(around != Around::Willing) {
-            for (pressed, demand) in [(false, false), (true, false), (false, true), (true, true)] {
-                let possible = match around {
-                    Around::Free => true,
-                    Around::Demand => demand,
-                    Around::Willing => !demand && pressed == armed,
-                };
-                if !possible {
-                    continue;
-                }
+            for (pressed, demand) in around.operator(armed) {
                 let bad = |dcount_i| Answer { status: Status { dcount_i, ..Status::default() }, intact: false };
                 let offered = match (fate, returned) {
                     (Fate::Delivered, Some(status)) => Some(Answer { status, intact: true }),
@@ -324,7 +351,7 @@ impl World {
     }
 
     /// Reception against timer (A37): which of both the machine follows, or both where either may win.
-    fn settle<M: Copy>(
+    pub(crate) fn settle<M: Copy>(
         &self,
         (machine, runs, timer): (M, bool, u8),
         (taken, path): (M, Path),
@@ -333,6 +360,8 @@ impl World {
     ) {
         let due = runs && timer + 1 >= self.model.watchdog;
         let received = !path.is_empty();
+        // A product may go elsewhere without a new SPDU.
+        let machine = if received { machine } else { taken };
         if received && !(due && self.model.reads(Reading::TimerFirst)) {
             follow(taken, path, 0);
         }
@@ -348,13 +377,18 @@ impl World {
 }
 
 /// The image an FS-Device presents: all zero before its first answer.
-pub fn image(device: &Device) -> Option<Status> {
+pub fn image(device: &learned::Device) -> Option<Status> {
     (device.state().0 > 21).then(|| device.status())
 }
 
-fn fates(faulty: bool) -> impl Iterator<Item = Fate> {
+pub(crate) fn fates(faulty: bool) -> impl Iterator<Item = Fate> {
     let disturbed = [Fate::Lost].into_iter().chain((0..8).map(Fate::Bad));
     [Fate::Delivered].into_iter().chain(disturbed.filter(move |_| faulty))
+}
+
+/// Machines of one kind as machines of either.
+fn either<M: Into<E>, E>(after: Vec<(M, Leg)>) -> Vec<(E, Leg)> {
+    after.into_iter().map(|(machine, leg)| (machine.into(), leg)).collect()
 }
 
 /// Each outcome once: the first way to it stays, so that an undisturbed one is preferred. A machine that goes another way to the

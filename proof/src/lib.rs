@@ -6,6 +6,7 @@
 
 mod chart;
 mod exchange;
+mod learned;
 mod model;
 mod property;
 mod recovery;
@@ -13,6 +14,7 @@ mod search;
 
 pub use chart::{Line, text};
 pub use exchange::{Around, Fate, Joint, Leg, Step, World, image};
+pub use learned::{Device, Gateway, Master, Product, can_stand_in};
 pub use model::{Model, Reading, Timing};
 pub use property::{PROPERTIES, Property, Seen, Watch, Watched};
 

@@ -2,7 +2,9 @@
 
 use core::fmt;
 use core::str::FromStr;
+use fsct_observed::{Mealy, Seen};
 use fsct_protocol::Edition;
+use std::sync::Arc;
 
 /// How the image that an FS-Device returns in an exchange relates to the one it receives there.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
@@ -158,6 +160,10 @@ pub struct Model {
     pub faults: Option<u8>,
     /// The FS-Device may lose its power at any time for any time.
     pub power_cycles: bool,
+    /// The machine of a product in place of the FS-Device ([`crate::can_stand_in`]).
+    pub device: Option<Arc<Mealy<Seen>>>,
+    /// The machine of a product in place of the FS-Master.
+    pub master: Option<Arc<Mealy<Seen>>>,
     /// Most states kept in one search, so that memory is bounded: a state takes some 60 octets.
     pub most_states: usize,
 }
@@ -179,6 +185,8 @@ impl Model {
             timing: Timing::Pipelined,
             faults: None,
             power_cycles: true,
+            device: None,
+            master: None,
             most_states: Model::MOST_STATES,
         }
     }

@@ -4,8 +4,9 @@
 //! explored state. It measures something in each exchange; it holds while the measure stays within its bound.
 
 use crate::exchange::{Around, Joint, Step};
+use crate::learned::{Device, Master};
 use crate::model::{Model, Timing};
-use fsct_protocol::scl::{Device, Master, Path, State, Var};
+use fsct_protocol::scl::{Path, State, Var};
 
 /// One exchange as a property sees it.
 pub struct Seen<'a> {

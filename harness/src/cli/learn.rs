@@ -11,7 +11,7 @@ use fsct_protocol::crc::Reading;
 use fsct_protocol::{Edition, ProtMode};
 use fsct_reports::learned as file;
 use fsct_reports::record::VariantInfo;
-use fsct_reports::visible;
+use fsct_reports::{learned_page, visible};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -129,6 +129,7 @@ fn execute(args: &Args) -> Result<u8, u8> {
         differences: kept,
     };
     write(&args.out, "learned.json", &(serde_json::to_string_pretty(&learned).unwrap_or_default() + "\n"))?;
+    write(&args.out, "learned.html", &learned_page(&learned))?;
     Ok(tell(&learned, &args.out))
 }
 
@@ -144,12 +145,17 @@ fn confirmed(lab: &mut Lab<'_>, side: Side, difference: &file::Difference) -> Re
 fn tell(learned: &file::Learned, out: &Path) -> u8 {
     let file::Learned { machine, table, differences, bound, extra_states, .. } = learned;
     print(format!("learnt    {} states; the tables have {}", machine.states.len(), table.states.len()));
-    print(format!("written   {}", out.join("learned.json").display()));
-    for (number, file::Difference { word, table, dut, .. }) in (1..).zip(differences.iter().take(TOLD)) {
+    print(format!("written   {}, learned.html", out.join("learned.json").display()));
+    let told = told(differences);
+    for (number, (difference, also)) in (1..).zip(told.iter().take(TOLD)) {
+        let file::Difference { word, table, dut, .. } = difference;
         let (last, before) = word.split_last().map_or((String::new(), String::new()), |(last, before)| {
             (last.clone(), if before.is_empty() { "the start".to_owned() } else { before.join(", ") })
         });
         print(format!("\n{number}. {last} behind {before}\n   tables  {table}\n   DUT     {dut}"));
+        if !also.is_empty() {
+            print(format!("   and otherwise than the tables to {} there", also.join(", ")));
+        }
     }
     match (differences.len(), bound) {
         (0, Some(bound)) => fail(INCONCLUSIVE, format!("{bound}: nothing different was seen until then")),
@@ -160,7 +166,7 @@ fn tell(learned: &file::Learned, out: &Path) -> u8 {
             0
         }
         (count, bound) => {
-            let more = if count > TOLD { format!("; {} more in learned.json", count - TOLD) } else { String::new() };
+            let more = if told.len() > TOLD { "; more in learned.json" } else { "" };
             print(format!("\ndiffers in {count} place{}{more}", if count == 1 { "" } else { "s" }));
             if let Some(bound) = bound {
                 print(format!("not learnt to the end: {bound}"));
@@ -168,6 +174,18 @@ fn tell(learned: &file::Learned, out: &Path) -> u8 {
             DIFFERS
         }
     }
+}
+
+/// The first difference of each pair of states, with the other inputs that show one there.
+fn told(differences: &[file::Difference]) -> Vec<(&file::Difference, Vec<&str>)> {
+    let mut told: Vec<(&file::Difference, Vec<&str>)> = Vec::new();
+    for difference in differences {
+        match told.iter_mut().find(|(first, _)| first.states == difference.states) {
+            Some((_, also)) => also.extend(difference.word.last().map(String::as_str)),
+            None => told.push((difference, Vec::new())),
+        }
+    }
+    told
 }
 
 fn trouble(trouble: Trouble) -> u8 {

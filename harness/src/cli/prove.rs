@@ -1,8 +1,12 @@
 //! `fsct prove`: what the tables of the SCL can and cannot do, over everything that a black channel, the power and an operator may do.
 
+mod learned;
+
 use super::{USAGE, fail, print};
 use fsct_proof::{Line, Model, Outcome, PROPERTIES, Property, Reading, Timing, Verdict, prove_all, reachable, text};
 use fsct_protocol::Edition;
+use fsct_reports::visible;
+use learned::{Product, Products};
 use serde_json::{Value, json};
 use std::time::Duration;
 
@@ -48,6 +52,8 @@ pub struct Args {
     /// One JSON document
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    products: Products,
 }
 
 /// A number of disturbed exchanges.
@@ -66,15 +72,22 @@ impl std::str::FromStr for Faults {
     }
 }
 
+/// What stands in for the FS-Device, and for the FS-Master.
+type Both = (Option<Product>, Option<Product>);
 type Proven = (Model, usize, Vec<(Outcome, Duration)>);
 
 /// Runs the command; the result is the exit code.
 pub fn run(args: &Args) -> u8 {
-    match prove(args) {
+    let products = match args.products.read() {
+        Ok(products) => products,
+        Err(sentence) => return fail(USAGE, sentence),
+    };
+    match prove(args, &products) {
         Ok(proven) => {
             if args.json {
-                print(Value::Array(proven.iter().map(document).collect()));
+                print(Value::Array(proven.iter().map(|proven| document(proven, &products)).collect()));
             } else {
+                introduce(&products);
                 proven.iter().for_each(show);
             }
             proven.iter().flat_map(|(.., outcomes)| outcomes).map(|(outcome, _)| code(outcome)).fold(0, worse)
@@ -96,7 +109,7 @@ fn code(outcome: &Outcome) -> u8 {
     }
 }
 
-fn prove(args: &Args) -> Result<Vec<Proven>, String> {
+fn prove(args: &Args, (device, master): &Both) -> Result<Vec<Proven>, String> {
     let properties = properties(&args.properties)?;
     let model = Model {
         readings: args.readings.clone(),
@@ -105,6 +118,8 @@ fn prove(args: &Args) -> Result<Vec<Proven>, String> {
         faults: args.faults.0,
         power_cycles: !args.no_power_cycles,
         most_states: args.most_states,
+        device: device.as_ref().map(|product| product.machine.clone()),
+        master: master.as_ref().map(|product| product.machine.clone()),
         ..Model::new(args.edition)
     };
     let mut models = vec![model.clone()];
@@ -128,6 +143,15 @@ fn properties(names: &[String]) -> Result<Vec<&'static Property>, String> {
     }
     let wanted = |property: &&Property| names.is_empty() || names.iter().any(|name| named(property, name));
     Ok(PROPERTIES.iter().filter(wanted).collect())
+}
+
+/// The products of which something is proven, in their own words.
+fn introduce((device, master): &Both) {
+    for (role, product) in [("FS-Device", device), ("FS-Master", master)] {
+        if let Some(Product { name, machine }) = product {
+            print(format!("{role} as learnt: {} ({} states)", visible(name), machine.states.len()));
+        }
+    }
 }
 
 fn show((model, states, outcomes): &Proven) {
@@ -192,7 +216,7 @@ fn described(model: &Model) -> String {
     format!("edition {edition}, {readings}, FSP_Watchdog of {watchdog} exchanges, timing {timing}, {faults}, {power}")
 }
 
-fn document((model, states, outcomes): &Proven) -> Value {
+fn document((model, states, outcomes): &Proven, (device, master): &Both) -> Value {
     let line =
         |line: &Line| json!({"spdu": line.spdu, "device": line.device, "answer": line.answer, "master": line.master});
     let lines = |lines: &[Line]| lines.iter().map(line).collect::<Vec<_>>();
@@ -217,6 +241,8 @@ fn document((model, states, outcomes): &Proven) -> Value {
         "timing": model.timing.to_string(),
         "faults": model.faults,
         "power_cycles": model.power_cycles,
+        "device": device.as_ref().map(|product| &product.name),
+        "master": master.as_ref().map(|product| &product.name),
         "states": states,
         "properties": outcomes.iter().map(|(one, _)| outcome(one)).collect::<Vec<_>>(),
     })
