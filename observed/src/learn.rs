@@ -2,10 +2,11 @@
 //!
 //! Two words lead to the same state until a word behind them tells them apart: that is the observation table of L* with the
 //! counterexamples of Rivest and Schapire. The machine found so is then tested with `access · inputs^(k + 1) · separating words`,
-//! which finds everything that `k` states more than it has could hide. Nothing is asked twice for an answer that is known, but each
+//! which finds everything that `k` states more than it has could hide. Before that it is asked where it differs from a machine that is
+//! expected, if there is one: most products are nearly that, and what is told of a difference has then been seen. Nothing is asked twice for an answer that is known, but each
 //! word repeats the beginning of others: a DUT that does not always answer alike contradicts itself soon.
 
-use crate::{Edge, Mealy};
+use crate::{Difference, Edge, Mealy, compared};
 use std::collections::HashMap;
 use std::hash::Hash;
 
@@ -79,7 +80,8 @@ pub enum Failure<O, E> {
     },
 }
 
-/// Learns the machine behind a teacher, which takes the inputs `0..inputs`.
+/// Learns the machine behind a teacher, which takes the inputs `0..inputs`. Where a machine is `expected`, every difference from it
+/// in what is learnt to the end has been seen.
 ///
 /// # Errors
 /// [`Failure`]; a bound that was hit is none.
@@ -87,9 +89,11 @@ pub fn learn<T: Teacher>(
     teacher: &mut T,
     inputs: usize,
     bounds: Bounds,
+    expected: Option<&Mealy<T::Output>>,
 ) -> Result<Learned<T::Output>, Failure<T::Output, T::Error>> {
     let single = (0..inputs).map(|input| vec![input]).collect();
-    let mut learner = Learner { memory: Memory::new(teacher, bounds.most_inputs), inputs, bounds, suffixes: single };
+    let memory = Memory::new(teacher, bounds.most_inputs);
+    let mut learner = Learner { memory, inputs, bounds, expected, suffixes: single };
     let mut latest = None;
     let bound = loop {
         let found = match learner.hypothesis() {
@@ -134,6 +138,7 @@ struct Learner<'t, T: Teacher> {
     memory: Memory<'t, T>,
     inputs: usize,
     bounds: Bounds,
+    expected: Option<&'t Mealy<T::Output>>,
     /// Words that tell states apart; every single input is one.
     suffixes: Vec<Vec<usize>>,
 }
@@ -182,15 +187,19 @@ impl<T: Teacher> Learner<'_, T> {
                 self.memory.again(&[access.as_slice(), word].concat())?;
             }
         }
+        let differences = self.expected.map(|expected| compared(&found.machine, expected)).unwrap_or_default();
+        for Difference { word, .. } in differences {
+            if let Some(wrong) = self.wrong(found, &word)? {
+                return Ok(Some(wrong));
+            }
+        }
         for length in 0..=self.bounds.extra + 1 {
             for access in &found.access {
                 let mut middle = vec![0; length];
                 loop {
                     for word in &separating {
-                        let word = [access, middle.as_slice(), word].concat();
-                        let (seen, (told, _)) = (self.memory.behind(&[], &word)?, found.machine.run(0, &word));
-                        if let Some(wrong) = seen.iter().zip(&told).position(|(seen, told)| seen != told) {
-                            return Ok(Some(word[..=wrong].to_vec()));
+                        if let Some(wrong) = self.wrong(found, &[access, middle.as_slice(), word].concat())? {
+                            return Ok(Some(wrong));
                         }
                     }
                     if !count_on(&mut middle, self.inputs) {
@@ -200,6 +209,13 @@ impl<T: Teacher> Learner<'_, T> {
             }
         }
         Ok(None)
+    }
+
+    /// The beginning of a word up to where the hypothesis is wrong, if it is.
+    fn wrong(&mut self, found: &Hypothesis<T::Output>, word: &[usize]) -> Halted<T, Option<Vec<usize>>> {
+        let (seen, (told, _)) = (self.memory.behind(&[], word)?, found.machine.run(0, word));
+        let wrong = seen.iter().zip(&told).position(|(seen, told)| seen != told);
+        Ok(wrong.map(|at| word[..=at].to_vec()))
     }
 
     /// Takes up the end of a counterexample that tells apart what the hypothesis takes for one state.

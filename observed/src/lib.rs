@@ -4,12 +4,14 @@
 //! nothing"), and sees what comes back on the link and application PCOs. What the rows of `fsct_protocol::scl` do under these inputs
 //! is a [`Mealy`] machine with few states; two that cannot be told apart are one.
 
+mod compare;
 pub mod device;
 pub mod learn;
 pub mod master;
 mod mealy;
 pub mod seen;
 
+pub use compare::{Difference, compared};
 pub use mealy::{Edge, Mealy};
 pub use seen::{Seen, Shown, Side};
 

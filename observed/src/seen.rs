@@ -1,8 +1,7 @@
 //! What a tester sees of a product, which need not be what the tables allow; and both machines of the tables in these terms.
 
-use crate::{Edge, Mealy, Subject, device, master};
+use crate::{Mealy, Subject, device, master};
 use fsct_protocol::scl::device::Readings;
-use std::hash::Hash;
 
 /// The side of the link a machine is on.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -147,39 +146,6 @@ fn bits(values: &[bool]) -> Shown {
     Shown((0..).zip(values).map(|(bit, value)| u8::from(*value) << bit).sum())
 }
 
-/// A place where two machines do not answer alike, reached without any such place before it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Difference {
-    /// A shortest word that shows it, with its last input.
-    pub word: Vec<usize>,
-    /// The states before that input: of one machine, and of the other.
-    pub at: (usize, usize),
-}
-
-/// Where two machines with the same inputs differ, the shortest words first; and for each state of the one that can be reached without
-/// a difference, a state of the other it corresponds to.
-pub fn compared<O: Copy + Eq + Hash>(one: &Mealy<O>, other: &Mealy<O>) -> (Vec<Difference>, Vec<Option<usize>>) {
-    let mut differences = Vec::new();
-    let mut partners = vec![None; one.states.len()];
-    let mut met = vec![((0, 0), Vec::new())];
-    let mut at = 0;
-    while let Some(((first, second), way)) = met.get(at).cloned() {
-        at += 1;
-        partners[first].get_or_insert(second);
-        for input in 0..one.inputs() {
-            let word = [way.as_slice(), &[input]].concat();
-            let (mine, theirs): (Edge<O>, Edge<O>) = (one.edge(first, input), other.edge(second, input));
-            let pair = (mine.next, theirs.next);
-            if mine.output != theirs.output {
-                differences.push(Difference { word, at: (first, second) });
-            } else if !met.iter().any(|(known, _)| *known == pair) {
-                met.push((pair, word));
-            }
-        }
-    }
-    (differences, partners)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -196,24 +162,5 @@ mod tests {
         assert_eq!(shown, Shown(0b1001));
         assert_eq!(Side::Device.names(shown), ["SDset", "PDout_D"]);
         assert_eq!(of_master(master::Bench::waiting().output()), Side::Master.showing(&["setSD"]));
-    }
-
-    #[test]
-    fn a_machine_differs_from_itself_nowhere() {
-        let table = Side::Device.table();
-        let (differences, partners) = compared(&table, &table);
-        assert_eq!(differences, []);
-        assert!(partners.iter().enumerate().all(|(state, partner)| *partner == Some(state)));
-    }
-
-    #[test]
-    fn a_difference_is_shown_by_a_shortest_word() {
-        let table = Side::Device.table();
-        let timeout = Side::Device.inputs().iter().position(|name| *name == "TIMEOUT").expect("an input");
-        let mut other = table.clone();
-        let state = table.edge(0, 0).next;
-        other.states[state][timeout].output = Seen::Silent;
-        let (differences, _) = compared(&other, &table);
-        assert_eq!(differences.first(), Some(&Difference { word: vec![0, timeout], at: (state, state) }));
     }
 }

@@ -22,7 +22,7 @@ impl<O: Copy + Eq + Hash> Teacher for Table<O> {
 }
 
 fn taught<O: Copy + Eq + Hash + std::fmt::Debug>(machine: &Mealy<O>, bounds: Bounds) -> Mealy<O> {
-    let learned = learn(&mut Table(machine.clone()), machine.inputs(), bounds).expect("it answers alike");
+    let learned = learn(&mut Table(machine.clone()), machine.inputs(), bounds, None).expect("it answers alike");
     assert_eq!(learned.bound, None);
     learned.machine.expect("no bound was hit")
 }
@@ -58,7 +58,7 @@ fn ring() -> Mealy<bool> {
 #[test]
 fn a_state_too_many_ends_it() {
     let bounds = Bounds { extra: 20, most_states: 10, ..BOUNDS };
-    let learned = learn(&mut Table(ring()), 1, bounds).expect("it answers alike");
+    let learned = learn(&mut Table(ring()), 1, bounds, None).expect("it answers alike");
     assert_eq!(learned.bound, Some(Bound::States));
     assert_eq!(learned.machine.map(|machine| machine.states.len()), Some(1));
     assert_eq!(taught(&ring(), Bounds { extra: 20, ..BOUNDS }), ring());
@@ -68,7 +68,7 @@ fn a_state_too_many_ends_it() {
 fn an_input_too_many_ends_it() {
     let device = observed(device::Bench::waiting(Readings::default()));
     let bounds = Bounds { most_inputs: 500, ..BOUNDS };
-    let learned = learn(&mut Table(device.clone()), device.inputs(), bounds).expect("it answers alike");
+    let learned = learn(&mut Table(device.clone()), device.inputs(), bounds, None).expect("it answers alike");
     assert_eq!((learned.bound, learned.machine), (Some(Bound::Inputs), None));
     assert!(learned.asked.inputs <= 500);
 }
@@ -93,7 +93,7 @@ impl Teacher for Varying {
 
 #[test]
 fn a_machine_that_varies_contradicts_itself() {
-    match learn(&mut Varying(0), 3, BOUNDS) {
+    match learn(&mut Varying(0), 3, BOUNDS, None) {
         Err(Failure::Contradiction { before, after, .. }) => assert_ne!(before, after),
         other => panic!("{other:?}"),
     }
@@ -112,12 +112,25 @@ impl Teacher for Silent {
 
 #[test]
 fn a_teacher_that_is_lost_ends_it() {
-    assert_eq!(learn(&mut Silent, 2, BOUNDS), Err(Failure::Teacher("lost")));
+    assert_eq!(learn(&mut Silent, 2, BOUNDS, None), Err(Failure::Teacher("lost")));
+}
+
+#[test]
+fn what_is_expected_is_looked_for_where_too_few_extra_states_hide_it() {
+    let bounds = Bounds { extra: 0, ..BOUNDS };
+    let learned = learn(&mut Table(ring()), 1, bounds, Some(&ring())).expect("it answers alike");
+    assert_eq!(learned.machine, Some(ring()));
+    // Where it is not what is expected, it is what it is.
+    let device = observed(device::Bench::waiting(Readings::default()));
+    let sequential = observed(device::Bench::waiting(Readings { sequential: true, ..Readings::default() }));
+    let learned = learn(&mut Table(sequential.clone()), 10, bounds, Some(&device)).expect("it answers alike");
+    assert_eq!(learned.machine, Some(sequential));
 }
 
 #[test]
 fn words_are_few() {
     let device = observed(device::Bench::waiting(Readings::default()));
-    let learned = learn(&mut Table(device.clone()), device::Bench::INPUTS.len(), BOUNDS).expect("it answers alike");
+    let learned =
+        learn(&mut Table(device.clone()), device::Bench::INPUTS.len(), BOUNDS, None).expect("it answers alike");
     assert!(learned.asked.words < 10_000, "{:?}", learned.asked);
 }

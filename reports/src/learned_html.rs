@@ -44,7 +44,7 @@ pub fn render(learned: &Learned) -> String {
                         dt { "Product" } dd { (short(&format!("{} {} {}", dut.vendor, dut.product, dut.version), NAME)) }
                         dt { "Variant" } dd { (short(&format!("{}, {}, PDout {}, PDin {}", variant.edition, variant.mode, variant.pd_out, variant.pd_in), NAME)) }
                         dt { "Asked" } dd { (learned.words) " words, " (learned.inputs_given) " inputs, seed " (learned.seed) }
-                        dt { "Exact if" } dd { "it has " (learned.extra_states) " states at the most beyond those found, and answers alike every time" }
+                        dt { "Exact if" } dd { "it hides no more than " (learned.extra_states) " further state" @if learned.extra_states != 1 { "s" } ", and answers alike every time" }
                     }
                     (told(differences))
                     h2 { "Both machines" }
@@ -53,8 +53,10 @@ pub fn render(learned: &Learned) -> String {
                         "one stands for every other input that leads there, and a pointer on it tells them. Red and dashed: what differs. Inputs "
                         "that stay where they are stand in the tables below."
                     }
-                    (drawing("tables", table, &learned.inputs, &theirs))
-                    (drawing("DUT", machine, &learned.inputs, &own))
+                    div style="display:flex;flex-wrap:wrap" {
+                        (drawing("tables", table, &learned.inputs, &theirs))
+                        (drawing("DUT", machine, &learned.inputs, &own))
+                    }
                     h2 { "DUT, input for input" }
                     (listed(machine, &learned.inputs, &own))
                     h2 { "Tables, input for input" }

@@ -86,7 +86,9 @@ fn execute(args: &Args) -> Result<u8, u8> {
     let side = side(profile.role);
     let bounds = Bounds { extra: args.extra.into(), most_states: args.most_states, most_inputs: args.most_inputs };
     let mut lab = Lab::new(&library, profile, &interrupted, &mut bench, variant, args.seed).map_err(trouble)?;
-    let learned = learn(&mut lab, side.inputs().len(), bounds).map_err(|failure| failed(side, &failure))?;
+    let table = side.table();
+    let learned =
+        learn(&mut lab, side.inputs().len(), bounds, Some(&table)).map_err(|failure| failed(side, &failure))?;
     let Learned { machine, bound, asked: Asked { words, inputs } } = learned;
     let bound = bound.map(|bound| match bound {
         Bound::States => format!("more than {} states (--most-states)", args.most_states),
@@ -98,14 +100,16 @@ fn execute(args: &Args) -> Result<u8, u8> {
         let bound = bound.unwrap_or_default();
         return Err(fail(INCONCLUSIVE, format!("{bound}: no machine explains what was seen so far")));
     };
-    let table = side.table();
     let mut differences = document::differences(side, &machine, &table);
-    // What is told was seen: each word is asked once more.
-    let mut kept = Vec::new();
-    for difference in differences.drain(..) {
-        if kept.len() >= TOLD || confirmed(&mut lab, side, &difference)? {
-            kept.push(difference);
+    if bound.is_some() {
+        // What was not learnt to the end may differ in what it supposes alone.
+        let mut seen = Vec::new();
+        for difference in differences {
+            if confirmed(&mut lab, side, &difference)? {
+                seen.push(difference);
+            }
         }
+        differences = seen;
     }
     let learned = file::Learned {
         schema: file::SCHEMA.to_owned(),
@@ -126,7 +130,7 @@ fn execute(args: &Args) -> Result<u8, u8> {
         outputs: side.outputs().iter().map(|name| (*name).to_owned()).collect(),
         machine: document::machine(side, &machine),
         table: document::machine(side, &table),
-        differences: kept,
+        differences,
     };
     write(&args.out, "learned.json", &(serde_json::to_string_pretty(&learned).unwrap_or_default() + "\n"))?;
     write(&args.out, "learned.html", &learned_page(&learned))?;
@@ -161,7 +165,8 @@ fn tell(learned: &file::Learned, out: &Path) -> u8 {
         (0, Some(bound)) => fail(INCONCLUSIVE, format!("{bound}: nothing different was seen until then")),
         (0, None) => {
             print(format!(
-                "equal: the DUT does what the tables say, if it has {extra_states} states at the most beside those"
+                "equal: the DUT does what the tables say, if it hides no more than {extra_states} further state{}",
+                if *extra_states == 1 { "" } else { "s" }
             ));
             0
         }

@@ -1,7 +1,6 @@
 //! Machines and differences as `learned.json` holds them.
 
-use fsct_observed::seen::{Difference, compared};
-use fsct_observed::{Edge, Mealy, Seen, Side};
+use fsct_observed::{Difference, Edge, Mealy, Seen, Side, compared};
 use fsct_reports::learned as file;
 
 /// A machine as it stands in the file.
@@ -21,7 +20,7 @@ pub fn machine(side: Side, machine: &Mealy<Seen>) -> file::Machine {
 /// The differences from the machine of the tables.
 pub fn differences(side: Side, machine: &Mealy<Seen>, table: &Mealy<Seen>) -> Vec<file::Difference> {
     let inputs = side.inputs();
-    let differences = compared(machine, table).0;
+    let differences = compared(machine, table);
     let told = differences.into_iter().filter_map(|Difference { word, at }| {
         let last = *word.last()?;
         Some(file::Difference {

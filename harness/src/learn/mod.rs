@@ -29,7 +29,7 @@ use std::sync::atomic::AtomicBool;
 /// The start condition every word begins from.
 const START: &str = "waiting";
 /// How often a word is tried on a real clock on which exchanges come late.
-const TRIES: usize = 5;
+const TRIES: usize = 10;
 /// Octets of process data each way, where the DUT leaves the choice.
 const PD: u8 = 2;
 
@@ -121,10 +121,10 @@ pub struct Lab<'l> {
 }
 
 impl<'l> Lab<'l> {
-    /// Makes the DUT this variant.
+    /// Ready to ask it as this variant.
     ///
     /// # Errors
-    /// [`Trouble`] when it does not take it.
+    /// [`Trouble`] when there is nothing to start it by.
     pub fn new(
         library: &'l Library,
         profile: &'l Profile,
@@ -133,7 +133,6 @@ impl<'l> Lab<'l> {
         variant: Variant,
         seed: u64,
     ) -> Result<Lab<'l>, Trouble> {
-        bench.configure(variant).map_err(|error| Trouble::Dut(error.to_string()))?;
         let mut problems = Vec::new();
         let mut start = library.start_steps(profile.role, START, &mut problems);
         if start.is_empty() || !problems.is_empty() {
@@ -151,6 +150,8 @@ impl<'l> Lab<'l> {
     /// One try; `None` where exchanges came late.
     fn once(&mut self, word: &[usize]) -> Result<Option<Vec<Seen>>, Trouble> {
         let Lab { profile, variant, seed, .. } = *self;
+        // A DUT that is configured forgets everything, an FS-Master the pause its supply needs between two starts as well.
+        self.bench.configure(variant).map_err(|error| Trouble::Dut(error.to_string()))?;
         let Bench { dut, description, .. } = &mut *self.bench;
         let setups: Vec<Setup> =
             (0..description.ports).map_while(|index| setup(profile, Mask::NONE, description, variant, index)).collect();
