@@ -5,6 +5,7 @@ mod cli;
 use cli::{Folder, Outcome, fsct};
 use rstest::rstest;
 use serde_json::Value;
+use std::sync::LazyLock;
 
 fn learned(dut: &str, out: &Folder, more: &[&str]) -> Outcome {
     fsct(&[&["learn", "--dut", dut, "--out", &out.out()], more].concat())
@@ -125,6 +126,16 @@ fn what_was_learnt_of_a_reference_proves_what_the_tables_prove(#[case] role: &st
 }
 
 #[test]
+fn the_machine_of_the_other_side_is_refused() {
+    let out = Folder::new("learn-prove-side");
+    assert_eq!(learned("inproc:reference-master", &out, &["--extra", "0"]).code, 0);
+    let path = out.0.join("learned.json").display().to_string();
+    let run = fsct(&["prove", "--device", &path]);
+    assert_eq!(run.code, 2, "{run:?}");
+    assert!(run.err.contains("it is not the machine of an FS-Device, as --device wants"), "{}", run.err);
+}
+
+#[test]
 fn a_learnt_fs_master_without_acknowledgment_is_found_out() {
     let out = Folder::new("learn-prove-restart");
     let dut = "inproc:reference-master?mutant=restart-without-acknowledgment";
@@ -145,21 +156,24 @@ fn a_learnt_fs_master_without_acknowledgment_is_found_out() {
 
 #[rstest]
 #[case::no_json("no JSON", "it is no learned.json as `fsct learn` writes it")]
-#[case::role(r#""role": "master""#, "it is not the machine of an FS-Device, as --device wants")]
+#[case::role(r#""role": "master""#, "its inputs are not GOOD, ")]
 #[case::schema(r#""schema": "fsct-learned/9""#, "its schema is `fsct-learned/9`")]
 #[case::next(r#""next": 99"#, "leads to state 99, of 14 states")]
 #[case::input(r#""NEXT","#, "its inputs are not NEXT, ")]
 #[case::spdu(r#""spdu": "other-counter""#, "with what no partner takes (answer with another counter")]
 #[case::bound(r#""bound": "more than 5 states""#, "it was not learnt to the end (more than 5 states)")]
 fn a_file_that_does_not_fit_is_refused(#[case] other: &str, #[case] sentence: &str) {
+    static DEVICE: LazyLock<String> = LazyLock::new(|| {
+        let out = Folder::new("learn-file");
+        assert_eq!(learned("inproc:reference-device", &out, &["--extra", "0"]).code, 0);
+        out.text("learned.json")
+    });
+    let text = &*DEVICE;
     let out = Folder::new(&format!("learn-file-{}", sentence.len()));
-    let role = if other.contains("role") { "master" } else { "device" };
-    assert_eq!(learned(&format!("inproc:reference-{role}"), &out, &["--extra", "0"]).code, 0);
-    let text = out.text("learned.json");
     let text = match other.split_once(": ") {
         None if other == "no JSON" => "{".to_owned(),
         None => text.replacen(other, r#""NEWER","#, 1),
-        Some(("\"role\"", _)) => text,
+        Some(("\"role\"", _)) => text.replacen(r#""role": "device""#, other, 1),
         Some(("\"bound\"", _)) => text.replacen(r#""bound": null"#, other, 1),
         Some(("\"next\"", _)) => text.replacen(r#""next": 1"#, other, 1),
         Some(("\"spdu\"", _)) => text.replacen(r#""spdu": "new""#, other, 1),

@@ -182,11 +182,15 @@ impl<'l> Lab<'l> {
         session.slipped = false;
         let Some(tester) = testers.first_mut() else { return Ok(None) };
         let hand = Hand::new(&mut session, tester);
-        let seen = match profile.role {
-            Role::Device => device::told(hand, word)?,
-            Role::Master => master::told(hand, word)?,
+        let told = match profile.role {
+            Role::Device => device::told(hand, word),
+            Role::Master => master::told(hand, word),
         };
-        Ok((!session.slipped).then_some(seen))
+        match told {
+            // Where an exchange came late, what followed says nothing.
+            Ok(_) | Err(Trouble::Short(_)) if session.slipped => Ok(None),
+            told => told.map(Some),
+        }
     }
 }
 
