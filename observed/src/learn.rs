@@ -80,6 +80,9 @@ pub enum Failure<O, E> {
     },
 }
 
+/// What came of learning from a teacher.
+pub type Outcome<T> = Result<Learned<<T as Teacher>::Output>, Failure<<T as Teacher>::Output, <T as Teacher>::Error>>;
+
 /// Learns the machine behind a teacher, which takes the inputs `0..inputs`. Where a machine is `expected`, every difference from it
 /// in what is learnt to the end has been seen.
 ///
@@ -90,7 +93,7 @@ pub fn learn<T: Teacher>(
     inputs: usize,
     bounds: Bounds,
     expected: Option<&Mealy<T::Output>>,
-) -> Result<Learned<T::Output>, Failure<T::Output, T::Error>> {
+) -> Outcome<T> {
     let single = (0..inputs).map(|input| vec![input]).collect();
     let memory = Memory::new(teacher, bounds.most_inputs);
     let mut learner = Learner { memory, inputs, bounds, expected, suffixes: single };
