@@ -29,7 +29,7 @@ use std::sync::atomic::AtomicBool;
 /// The start condition every word begins from.
 const START: &str = "waiting";
 /// How often a word is tried on a real clock on which exchanges come late.
-const TRIES: usize = 10;
+const TRIES: usize = 50;
 /// Octets of process data each way, where the DUT leaves the choice.
 const PD: u8 = 2;
 
