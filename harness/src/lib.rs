@@ -19,6 +19,7 @@ pub mod gauntlet;
 pub mod injection;
 pub mod judging;
 pub mod keeper;
+pub mod learn;
 pub mod ledger;
 pub mod library;
 pub mod limits;

@@ -5,14 +5,19 @@
 //! is a [`Mealy`] machine with few states; two that cannot be told apart are one.
 
 mod absolute;
+mod compare;
 pub mod device;
 pub mod identify;
+pub mod learn;
 pub mod master;
 mod mealy;
+pub mod seen;
 pub mod suite;
 
 pub use absolute::{Absolute, Counted};
+pub use compare::{Difference, compared};
 pub use mealy::{Edge, Mealy};
+pub use seen::{Seen, Shown, Side};
 
 use std::fmt::Debug;
 use std::hash::Hash;

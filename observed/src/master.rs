@@ -62,6 +62,12 @@ impl Bench {
         master.start();
         Bench { master: master.settled(true), given: None }
     }
+
+    /// What stands: the SPDU, and what the gateway is given.
+    pub fn output(&self) -> Output {
+        let Control { set_sd, ch_f_ack_req, .. } = self.master.control();
+        Output { set_sd, ch_f_ack_req, pdout: self.master.uses_pdout(), pdin: self.master.get(Var::In) == 1 }
+    }
 }
 
 const fn good(sd_set: bool, ack: bool, set_sd: bool) -> Input {
@@ -121,10 +127,8 @@ impl Subject for Bench {
         if !path.is_empty() {
             *given = master.previous();
         }
-        let Control { set_sd, ch_f_ack_req, .. } = master.control();
-        let (pdout, pdin) = (master.uses_pdout(), master.get(Var::In) == 1);
         *master = master.settled(true);
-        (!path.is_empty()).then_some(Output { set_sd, ch_f_ack_req, pdout, pdin })
+        (!path.is_empty()).then(|| self.output())
     }
 }
 

@@ -1,9 +1,10 @@
 //! A way through the composition as a sequence chart: one line per exchange.
 
 use crate::exchange::{Fate, Joint, Step, World, image};
+use crate::learned::{Device, Master};
 use crate::model::Timing;
 use crate::reading::Machine;
-use fsct_protocol::scl::{Device, Master, Path, State, Var};
+use fsct_protocol::scl::{Path, State, Var};
 use fsct_protocol::spdu::{Control, Status};
 use std::fmt::Write as _;
 
@@ -93,8 +94,8 @@ pub(crate) fn lines(world: &mut World, steps: &[Step]) -> Vec<Line> {
 }
 
 fn turn(world: &World, from: Joint, step: &Step) -> Turn {
-    let (master_before, device_before) = (*world.master(from.master), *world.device(from.device));
-    let (master, device) = (*world.master(step.to.master), *world.device(step.to.device));
+    let (master_before, device_before) = (world.master(from.master), world.device(from.device));
+    let (master, device) = (world.master(step.to.master), world.device(step.to.device));
     let answering = if world.model().timing == Timing::Pipelined { &device_before } else { &device };
     Turn {
         control: master_before.control(),
@@ -214,15 +215,19 @@ fn device_side(turn: &Turn) -> String {
     if !turn.powered() {
         return if turn.device_before.state() == State(20) { "off".to_owned() } else { "power off".to_owned() };
     }
-    let state = format!("{}{}", way(&turn.device_path), turn.device.state());
+    let state = format!("{}{}", way(&turn.device_path), turn.device.place());
     let live = turn.device.uses_pdout().then_some("PDout_D");
     words([Some(state.as_str()), turn.sdset_ds.then_some("SDset_DS=1"), live, None])
 }
 
 fn master_side(turn: &Turn) -> String {
-    let state = format!("{}{}", way(&turn.master_path), turn.master.state());
-    let acknowledged =
-        turn.master_path.iter().any(|t| t.0 == 10).then_some(if turn.ch_f_ack_c { "ChFAck_C=1" } else { "ChFAck_C=0" });
+    let state = format!("{}{}", way(&turn.master_path), turn.master.place());
+    // A product's T10 is not seen.
+    let acknowledged = turn.master_path.iter().any(|t| matches!(t.0, 10 | 11 | 13)).then_some(if turn.ch_f_ack_c {
+        "ChFAck_C=1"
+    } else {
+        "ChFAck_C=0"
+    });
     let live = turn.pdin().then_some("PDin_M");
     words([Some(state.as_str()), acknowledged, turn.set_sd_c.then_some("setSD_C=1"), live])
 }

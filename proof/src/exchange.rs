@@ -3,13 +3,14 @@
 //! The machines are those of `fsct_protocol::scl`, read as `machine` says; what stands here is the channel, the power, the operator
 //! and the timers.
 
+use crate::learned::{self, Gateway, Product};
 use crate::machine::{FsDevice, FsMaster, Shown};
 use crate::model::{Model, Timers, Timing};
 use crate::reading::{Machine, Reading, Reads};
 use crate::search::Spread;
 use fsct_protocol::scl::device::Received;
 use fsct_protocol::scl::master::Answer;
-use fsct_protocol::scl::{Device, Master, Path, State, Var};
+use fsct_protocol::scl::{Path, State, Var};
 use fsct_protocol::spdu::{Control, Status};
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hash};
@@ -38,6 +39,19 @@ pub enum Around {
     /// The link is healthy, the FS-Device has power, nobody demands, and the operator acknowledges as soon as ChFAck_C has been
     /// seen at 0.
     Willing,
+}
+
+impl Around {
+    /// ChFAck_C and setSD_C as they may be; `armed`: ChFAck_C has been seen at 0.
+    pub(crate) fn operator(self, armed: bool) -> impl Iterator<Item = (bool, bool)> {
+        [(false, false), (true, false), (false, true), (true, true)].into_iter().filter(move |(pressed, demand)| {
+            match self {
+                Around::Free => true,
+                Around::Demand => *demand,
+                Around::Willing => !demand && *pressed == armed,
+            }
+        })
+    }
 }
 
 /// A machine's way through one exchange.
@@ -107,6 +121,20 @@ impl<M: Copy + Eq + Hash> Met<M> {
     }
 }
 
+/// An FS-Master as it is followed: by the rows, or learnt.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Hash)]
+enum MasterSide {
+    Rows(FsMaster),
+    Learned(Gateway),
+}
+
+/// An FS-Device as it is followed.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Hash)]
+enum DeviceSide {
+    Rows(FsDevice),
+    Learned(Product),
+}
+
 type Memo<K> = HashMap<K, Arc<[Leg]>, BuildHasherDefault<Spread>>;
 
 /// The composition: knows what may happen in an exchange.
@@ -116,15 +144,15 @@ pub struct World {
     device_ways: Vec<Reads>,
     /// State 7 remembers the previous counter.
     kept: bool,
-    masters: Met<FsMaster>,
-    devices: Met<FsDevice>,
+    masters: Met<MasterSide>,
+    devices: Met<DeviceSide>,
     master_legs: Memo<(u32, u8, Offered, Around)>,
     device_legs: Memo<(u32, u8, Offered, Around)>,
 }
 
 /// What may reach a machine in an exchange: the image presented now, and those that are stored.
-#[derive(Copy, Clone, Debug, PartialEq, Eq, Hash)]
-struct Offered {
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub(crate) struct Offered {
     now: Option<u8>,
     before: Shown,
 }
@@ -167,13 +195,15 @@ impl World {
 
     /// The beginning: FS-Master in state 2, FS-Device without power.
     pub fn start(&mut self) -> Joint {
-        let off = self.off(Shown::default());
-        Joint {
-            master: self.masters.number(FsMaster::started(Shown::default()).0),
-            device: self.devices.number(off),
-            mtimer: 0,
-            dtimer: 0,
-        }
+        let master = match self.model.master {
+            None => MasterSide::Rows(FsMaster::started(Shown::default()).0),
+            Some(_) => MasterSide::Learned(Gateway::START),
+        };
+        let device = match self.model.device {
+            None => DeviceSide::Rows(self.off(Shown::default())),
+            Some(_) => DeviceSide::Learned(Product::OFF),
+        };
+        Joint { master: self.masters.number(master), device: self.devices.number(device), mtimer: 0, dtimer: 0 }
     }
 
     fn off(&self, shown: Shown) -> FsDevice {
@@ -181,34 +211,45 @@ impl World {
     }
 
     /// An FS-Master by its number.
-    pub fn master(&self, number: u32) -> &Master {
-        &self.masters.all[number as usize].scl
+    pub fn master(&self, number: u32) -> learned::Master {
+        match self.masters.all[number as usize] {
+            MasterSide::Rows(master) => master.scl.into(),
+            MasterSide::Learned(gateway) => gateway.into(),
+        }
     }
 
     /// An FS-Device by its number.
-    pub fn device(&self, number: u32) -> &Device {
-        &self.devices.all[number as usize].scl
+    pub fn device(&self, number: u32) -> learned::Device {
+        match self.devices.all[number as usize] {
+            DeviceSide::Rows(device) => device.scl.into(),
+            DeviceSide::Learned(product) => product.into(),
+        }
+    }
+
+    /// The images that an FS-Master or FS-Device has presented; nothing is stored of a product.
+    fn shown(&self, from: Joint, to: Machine) -> Shown {
+        match (to, self.masters.all[from.master as usize], self.devices.all[from.device as usize]) {
+            (Machine::Device, MasterSide::Rows(master), _) => master.shown,
+            (Machine::Master, _, DeviceSide::Rows(device)) => device.shown,
+            _ => Shown::default(),
+        }
     }
 
     /// The counter bits of an SPDU (to the FS-Device) or answer that was presented so many exchanges ago.
     pub(crate) fn stored(&self, from: Joint, to: Machine, ago: u8) -> Option<u8> {
-        let shown = match to {
-            Machine::Device => self.masters.all[from.master as usize].shown,
-            Machine::Master => self.devices.all[from.device as usize].shown,
-        };
-        shown.ago(ago).map(|octet| octet >> 5)
+        self.shown(from, to).ago(ago).map(|octet| octet >> 5)
     }
 
     /// Everything that may happen in the next exchange, the undisturbed first, each outcome once.
     pub fn steps(&mut self, from: Joint, around: Around) -> Vec<Step> {
         let mut steps = Vec::new();
-        let before = image(self.device(from.device)).map(Status::to_octet);
-        let stored = self.devices.all[from.device as usize].shown;
+        let before = image(&self.device(from.device)).map(Status::to_octet);
+        let stored = self.shown(from, Machine::Master);
         let pipelined = (self.model.timing == Timing::Pipelined)
             .then(|| self.master_legs(from, Offered { now: before, before: stored }, around));
         for device in self.device_legs(from, around).iter() {
             let masters = pipelined.clone().unwrap_or_else(|| {
-                let now = image(self.device(device.to)).map(Status::to_octet);
+                let now = image(&self.device(device.to)).map(Status::to_octet);
                 self.master_legs(from, Offered { now, before: stored }, around)
             });
             steps.extend(masters.iter().map(|master| {
@@ -220,15 +261,22 @@ impl World {
     }
 
     fn device_legs(&mut self, from: Joint, around: Around) -> Arc<[Leg]> {
-        let master = &self.masters.all[from.master as usize];
-        let offered = Offered { now: Some(master.scl.control().to_octet()), before: master.shown };
+        let control = self.master(from.master).control();
+        let offered = Offered { now: Some(control.to_octet()), before: self.shown(from, Machine::Device) };
         let key = (from.device, from.dtimer, offered, around);
         if let Some(legs) = self.device_legs.get(&key) {
             return Arc::clone(legs);
         }
-        let device = self.devices.all[from.device as usize];
-        let legs = self.devices_after(device, from.dtimer, offered, around);
-        let legs: Arc<[Leg]> = distinct(legs, |device| self.devices.number(device));
+        let after = match (self.devices.all[from.device as usize], &self.model.device) {
+            (DeviceSide::Rows(device), _) => {
+                either(self.devices_after(device, from.dtimer, offered, around), DeviceSide::Rows)
+            }
+            (DeviceSide::Learned(product), Some(machine)) => {
+                either(self.products_after(machine, product, from.dtimer, control, around), DeviceSide::Learned)
+            }
+            (DeviceSide::Learned(_), None) => Vec::new(),
+        };
+        let legs: Arc<[Leg]> = distinct(after, |device| self.devices.number(device));
         self.device_legs.insert(key, Arc::clone(&legs));
         legs
     }
@@ -288,7 +336,7 @@ impl World {
     /// The image of this exchange goes to the store.
     fn presented(&self, before: FsDevice, after: FsDevice) -> FsDevice {
         let presenting = if self.model.timing == Timing::Pipelined { before } else { after };
-        let now = image(&presenting.scl).map(Status::to_octet);
+        let now = image(&presenting.scl.into()).map(Status::to_octet);
         FsDevice { shown: before.shown.then(now, self.model.storing_answers), ..after }
     }
 
@@ -297,9 +345,17 @@ impl World {
         if let Some(legs) = self.master_legs.get(&key) {
             return Arc::clone(legs);
         }
-        let master = self.masters.all[from.master as usize];
-        let legs = self.masters_after(master, from.mtimer, returned, around);
-        let legs: Arc<[Leg]> = distinct(legs, |master| self.masters.number(master));
+        let after = match (self.masters.all[from.master as usize], &self.model.master) {
+            (MasterSide::Rows(master), _) => {
+                either(self.masters_after(master, from.mtimer, returned, around), MasterSide::Rows)
+            }
+            (MasterSide::Learned(gateway), Some(machine)) => {
+                let status = returned.now.map(Status::from_octet);
+                either(self.gateways_after(machine, gateway, from.mtimer, status, around), MasterSide::Learned)
+            }
+            (MasterSide::Learned(_), None) => Vec::new(),
+        };
+        let legs: Arc<[Leg]> = distinct(after, |master| self.masters.number(master));
         self.master_legs.insert(key, Arc::clone(&legs));
         legs
     }
@@ -310,15 +366,7 @@ impl World {
         let shown = master.shown.then(Some(master.scl.control().to_octet()), self.model.storing);
         for reads in self.choice(&self.master_ways, master.scl.state()) {
             for fate in fates(around != Around::Willing, returned) {
-                for (pressed, demand) in [(false, false), (true, false), (false, true), (true, true)] {
-                    let possible = match around {
-                        Around::Free => true,
-                        Around::Demand => demand,
-                        Around::Willing => !demand && pressed == armed,
-                    };
-                    if !possible {
-                        continue;
-                    }
+                for (pressed, demand) in around.operator(armed) {
                     let mut taken = master;
                     taken.scl.set_set_sd_c(demand);
                     let path = match arriving(fate, returned) {
@@ -349,7 +397,7 @@ impl World {
     }
 
     /// Reception against timer (A37): which of both the machine follows, or both where either may win.
-    fn settle<M: Copy>(
+    pub(crate) fn settle<M: Copy>(
         &self,
         (machine, runs, timer, reads): (M, bool, u8, Reads),
         (taken, path): (M, Path),
@@ -359,6 +407,8 @@ impl World {
         let counted = self.model.timers == Timers::Counted;
         let due = runs && (!counted || timer + 1 >= self.model.watchdog);
         let received = !path.is_empty();
+        // A product may go elsewhere without a new SPDU.
+        let machine = if received { machine } else { taken };
         if received && !(due && counted && reads.has(Reading::TimerFirst)) {
             follow(taken, path, 0);
         }
@@ -374,12 +424,12 @@ impl World {
 }
 
 /// The image an FS-Device presents: all zero before its first answer.
-pub fn image(device: &Device) -> Option<Status> {
+pub fn image(device: &learned::Device) -> Option<Status> {
     (device.state().0 > 21).then(|| device.status())
 }
 
 /// What the channel may do: an image that stood without a change until now is the one presented now, and not stored.
-fn fates(faulty: bool, offered: Offered) -> impl Iterator<Item = Fate> {
+pub(crate) fn fates(faulty: bool, offered: Offered) -> impl Iterator<Item = Fate> {
     let bad = (0..8).map(Fate::Bad);
     let disturbed = [Fate::Lost].into_iter().chain(bad).chain(offered.before.others(offered.now).map(Fate::Stored));
     [Fate::Delivered].into_iter().chain(disturbed.filter(move |_| faulty))
@@ -393,6 +443,11 @@ fn arriving(fate: Fate, offered: Offered) -> Option<(u8, bool)> {
         Fate::Bad(counter) => Some((offered.now.unwrap_or_default() & 0x1F | counter << 5, false)),
         Fate::Stored(ago) => offered.before.ago(ago).map(|octet| (octet, true)),
     }
+}
+
+/// Machines of one kind as machines of either.
+fn either<M, E>(after: Vec<(M, Leg)>, kind: impl Fn(M) -> E) -> Vec<(E, Leg)> {
+    after.into_iter().map(|(machine, leg)| (kind(machine), leg)).collect()
 }
 
 /// Each outcome once: the first way to it stays, so that an undisturbed one is preferred. A machine that goes another way to the

@@ -7,6 +7,7 @@
 mod chart;
 mod cores;
 mod exchange;
+mod learned;
 mod machine;
 mod model;
 mod property;
@@ -18,6 +19,7 @@ mod tolerance;
 
 pub use chart::{Line, Turn, text};
 pub use exchange::{Around, Fate, Joint, Leg, Step, World, image};
+pub use learned::{Device, Gateway, Master, Product, can_stand_in};
 pub use model::{Model, Timers, Timing};
 pub use property::{PROPERTIES, Property, Seen, Watch, Watched};
 pub use reading::{Machine, Reading};

@@ -3,7 +3,9 @@
 use crate::reading::{Machine, Reading, Reads};
 use core::fmt;
 use core::str::FromStr;
+use fsct_observed::{Mealy, Seen};
 use fsct_protocol::Edition;
+use std::sync::Arc;
 
 /// How the image that an FS-Device returns in an exchange relates to the one it receives there.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
@@ -97,6 +99,10 @@ pub struct Model {
     pub power_cycles: bool,
     /// The FS-Master may start anew at any time.
     pub master_restart: bool,
+    /// The machine of a product in place of the FS-Device ([`crate::can_stand_in`]).
+    pub device: Option<Arc<Mealy<Seen>>>,
+    /// The machine of a product in place of the FS-Master.
+    pub master: Option<Arc<Mealy<Seen>>>,
     /// Most states kept in one search, so that memory is bounded: a state takes some 60 octets.
     pub most_states: usize,
 }
@@ -127,6 +133,8 @@ impl Model {
             faults: None,
             power_cycles: true,
             master_restart: false,
+            device: None,
+            master: None,
             most_states: Model::MOST_STATES,
         }
     }
@@ -187,6 +195,27 @@ impl Model {
         }
         for machine in Machine::ALL {
             self.check_readings(machine)?;
+        }
+        self.check_products()
+    }
+
+    /// What a product does was learnt, so nothing about the tables can be asked of its side.
+    fn check_products(&self) -> Result<(), String> {
+        let products = [(Machine::Device, self.device.is_some()), (Machine::Master, self.master.is_some())];
+        let products: Vec<Machine> = products.into_iter().filter_map(|(machine, is)| is.then_some(machine)).collect();
+        let left =
+            |reading: &&Reading| !Machine::ALL.iter().any(|one| !products.contains(one) && reading.concerns(*one));
+        let own = |machine: &Machine| match machine {
+            Machine::Device => self.device_readings.first(),
+            Machine::Master => self.master_readings.first(),
+        };
+        let order = |reading: &&Reading| !matches!(reading, Reading::TimerFirst | Reading::ReceptionFirst);
+        let given = products.iter().find_map(own).or(self.readings.iter().filter(order).find(left));
+        if let Some(reading) = given.filter(|_| !products.is_empty()) {
+            return Err(format!("{reading} is a reading of the tables, and a product stands in for them there"));
+        }
+        if !products.is_empty() && (self.storing.max(self.storing_answers) > 0 || self.master_restart) {
+            return Err("with a product nothing is stored and the FS-Master does not start anew".to_owned());
         }
         Ok(())
     }

@@ -4,9 +4,10 @@
 //! explored state. It measures something in each exchange; it holds while the measure stays within its bound.
 
 use crate::exchange::{Around, Joint, Step, taken_from_store};
+use crate::learned::{Device, Master};
 use crate::model::{Model, Timers, Timing};
 use crate::reading::Machine;
-use fsct_protocol::scl::{Device, Master, Path, State, Var};
+use fsct_protocol::scl::{Path, State, Var};
 
 /// One exchange as a property sees it.
 pub struct Seen<'a> {
@@ -19,9 +20,9 @@ pub struct Seen<'a> {
     /// What happened.
     pub step: &'a Step,
     /// FS-Master behind the exchange.
-    pub master: &'a Master,
+    pub master: Master,
     /// FS-Device behind the exchange; in state 20 it has no power.
-    pub device: &'a Device,
+    pub device: Device,
 }
 
 impl Seen<'_> {

@@ -4,8 +4,9 @@
 //! recovers. What is left in the end never needs to.
 
 use crate::exchange::{Around, Joint, Step, World};
+use crate::learned::{Device, Master};
 use crate::search::{End, Found, explore, steps_to};
-use fsct_protocol::scl::{Device, Master, State, Var};
+use fsct_protocol::scl::{State, Var};
 use std::collections::HashMap;
 
 /// What was found about recovery.
@@ -39,7 +40,7 @@ pub fn recovery(world: &mut World) -> Recovery {
         .collect();
     let mut needed: Vec<Option<u8>> = joints
         .iter()
-        .map(|joint| operates(world.master(joint.master), world.device(joint.device)).then_some(0))
+        .map(|joint| operates(&world.master(joint.master), &world.device(joint.device)).then_some(0))
         .collect();
     let mut open: Vec<usize> = (0..joints.len()).filter(|number| needed[*number].is_none()).collect();
     loop {

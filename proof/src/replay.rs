@@ -42,7 +42,7 @@ pub fn replay(model: &Model, chart: &[Line], on: bool) -> Vec<Turn> {
     let device = Device::new(Readings::default());
     let mut play = Play { model, master, device, mtimer: 0, dtimer: 0 };
     let mut turns: Vec<Turn> = chart.iter().map(|line| play.exchange(Given::from(&line.turn))).collect();
-    while on && turns.len() < chart.len() + MOST && !operates(&play.master, &play.device) {
+    while on && turns.len() < chart.len() + MOST && !operates(&play.master.into(), &play.device.into()) {
         let willing = Given::willing(play.master.get(Var::ChFAckCe) == 1);
         turns.push(play.exchange(willing));
     }
@@ -75,8 +75,8 @@ impl Play<'_> {
         let (master_before, device_before) = (self.master, self.device);
         let control = self.master.control();
         let device_path = self.device_takes(given, control);
-        let answering = if self.model.timing == Timing::Pipelined { &device_before } else { &self.device };
-        let status = image(answering);
+        let answering = if self.model.timing == Timing::Pipelined { device_before } else { self.device };
+        let status = image(&answering.into());
         let master_path = self.master_takes(given, status);
         Turn {
             control,
@@ -85,12 +85,12 @@ impl Play<'_> {
             status,
             back: given.back,
             stored: [None; 2],
-            device_before,
-            device: self.device,
+            device_before: device_before.into(),
+            device: self.device.into(),
             device_path,
             sdset_ds: given.sdset_ds,
-            master_before,
-            master: self.master,
+            master_before: master_before.into(),
+            master: self.master.into(),
             master_path,
             ch_f_ack_c: given.ch_f_ack_c,
             set_sd_c: given.set_sd_c,

@@ -189,7 +189,7 @@ pub(crate) fn explore(world: &mut World, property: Option<&Property>) -> (Found,
             }
             keys.into_iter().flatten().for_each(|key| states.add(key, at as u32));
         }
-        if states.len() > most {
+        if states.len() > most || world.is_full() {
             end = End::TooMany;
             break;
         }

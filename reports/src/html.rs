@@ -16,9 +16,10 @@ use crate::text::{short, visible as clean};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::collections::BTreeMap;
 
-const STYLE: &str = include_str!("style.css");
+/// How every page looks.
+pub const STYLE: &str = include_str!("style.css");
 /// Nothing is loaded from anywhere.
-const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:";
+pub const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:";
 /// Cases of one id shown in full when they did not pass.
 const IN_FULL: usize = 3;
 /// Octets that details may take of the page: those of cases that need a reader, then those of one case an id. With the

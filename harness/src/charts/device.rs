@@ -34,7 +34,7 @@ pub fn steps(turns: &[Turn]) -> Vec<Told> {
         }
         if turn.device_expired() {
             expiries += 1;
-            let expect = expected(&turn.device_before, &turn.device, &turn.device_path, false);
+            let expect = asked(turn);
             steps.push(Told { path: turn.device_path, ..told(wait(expiries, "lost"), expect) });
             continue;
         }
@@ -61,7 +61,7 @@ pub fn steps(turns: &[Turn]) -> Vec<Told> {
         let told_apart =
             turn.device_before.state() == State(21) || turn.device_before.status().dcount_i != inv3(arrived.0.mcount);
         let expect = match told_apart {
-            true => expected(&turn.device_before, &turn.device, &turn.device_path, false),
+            true => asked(turn),
             false => Vec::new(),
         };
         let error = turn.device.get(Var::CommErr) == 1;
@@ -72,6 +72,12 @@ pub fn steps(turns: &[Turn]) -> Vec<Told> {
         steps.push(Told { before, ..told("parameterize: {}".to_owned(), Vec::new()) });
     }
     steps
+}
+
+/// What the tables ask of the FS-Device; a case is made of their machines alone.
+fn asked(turn: &Turn) -> Vec<String> {
+    let rows = turn.device_before.rows().zip(turn.device.rows());
+    rows.map_or_else(Vec::new, |(before, device)| expected(before, device, &turn.device_path, false))
 }
 
 fn exchange(turn: &Turn, (control, intact): (Control, bool), more: &str) -> String {

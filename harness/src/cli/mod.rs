@@ -13,6 +13,7 @@ mod explain;
 mod gauntlet;
 mod host;
 mod iodd;
+mod learn;
 mod list;
 mod prove;
 mod report;
@@ -76,6 +77,8 @@ enum Command {
     Dossier(dossier::Args),
     /// Run every mutant of the reference DUTs against the suites: the kill matrix
     Gauntlet(gauntlet::Args),
+    /// Learn the machine of a DUT as a tester sees it, and say where it is not that of the tables
+    Learn(learn::Args),
     /// Explore both machines of the SCL, as the tables have them, with a black channel that does its worst
     Prove(prove::Args),
     /// Prove the known answers for the CRC signatures
@@ -110,6 +113,7 @@ pub fn main() -> ExitCode {
         Command::Report(args) => report::run(&args),
         Command::Dossier(args) => dossier::run(&args),
         Command::Gauntlet(args) => gauntlet::run(&args),
+        Command::Learn(args) => learn::run(&args),
         Command::Prove(args) => prove::run(&args),
         Command::Vectors(args) => vectors::run(&args),
         Command::Crc(args) => crc::run(&args),

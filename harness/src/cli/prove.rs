@@ -1,5 +1,6 @@
 //! `fsct prove`: what the tables of the SCL can and cannot do, over everything that a black channel, the power and an operator may do.
 
+mod learned;
 mod matrix;
 mod tolerances;
 
@@ -10,6 +11,7 @@ use fsct_proof::{
 };
 use fsct_protocol::Edition;
 use fsct_reports::visible;
+use learned::{Product, Products};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::path::PathBuf;
@@ -21,7 +23,9 @@ const VIOLATED: u8 = 1;
 const UNKNOWN: u8 = 5;
 
 /// Options that `--tolerances` and `--matrix` choose themselves.
-const OTHERS: [&str; 17] = [
+const OTHERS: [&str; 19] = [
+    "device",
+    "master",
     "emit",
     "svg",
     "edition",
@@ -116,11 +120,22 @@ pub struct Args {
     svg: Option<PathBuf>,
     #[command(flatten)]
     cases: Cases,
+    #[command(flatten)]
+    products: Products,
 }
 
-/// Options whose charts are no cases: no DUT is led through what the standard excludes, or through what no one clock does.
-const BEYOND: [&str; 7] =
-    ["storing", "storing_answers", "master_restart", "timers", "mixed", "master_readings", "device_readings"];
+/// Options whose charts are no cases: no DUT is led through what the standard excludes, what no one clock does, or what one product did.
+const BEYOND: [&str; 9] = [
+    "storing",
+    "storing_answers",
+    "master_restart",
+    "timers",
+    "mixed",
+    "master_readings",
+    "device_readings",
+    "device",
+    "master",
+];
 
 /// A number of disturbed exchanges.
 #[derive(Copy, Clone, Debug)]
@@ -138,6 +153,8 @@ impl std::str::FromStr for Faults {
     }
 }
 
+/// What stands in for the FS-Device, and for the FS-Master.
+type Both = (Option<Product>, Option<Product>);
 type Proven = (Model, usize, Vec<(Outcome, Duration)>);
 
 /// Runs the command; the result is the exit code.
@@ -153,11 +170,16 @@ pub fn run(args: &Args) -> u8 {
         };
         return tolerances::run(args.watchdog, form);
     }
-    match prove(args) {
+    let products = match args.products.read() {
+        Ok(products) => products,
+        Err(sentence) => return fail(USAGE, sentence),
+    };
+    match prove(args, &products) {
         Ok(proven) => {
             if args.json {
-                print(Value::Array(proven.iter().map(document).collect()));
+                print(Value::Array(proven.iter().map(|proven| document(proven, &products)).collect()));
             } else {
+                introduce(&products);
                 proven.iter().for_each(show);
             }
             match write(args, &proven) {
@@ -247,7 +269,7 @@ fn code(outcome: &Outcome) -> u8 {
     }
 }
 
-fn prove(args: &Args) -> Result<Vec<Proven>, String> {
+fn prove(args: &Args, (device, master): &Both) -> Result<Vec<Proven>, String> {
     let model = Model {
         readings: args.readings.clone(),
         master_readings: args.master_readings.clone(),
@@ -262,6 +284,8 @@ fn prove(args: &Args) -> Result<Vec<Proven>, String> {
         faults: args.faults.0,
         power_cycles: !args.no_power_cycles,
         most_states: args.most_states,
+        device: device.as_ref().map(|product| product.machine.clone()),
+        master: master.as_ref().map(|product| product.machine.clone()),
         ..Model::new(args.edition)
     };
     let properties = properties(&args.properties, &model)?;
@@ -292,6 +316,15 @@ fn properties(names: &[String], model: &Model) -> Result<Vec<&'static Property>,
                 && (names.is_empty() || names.iter().any(|name| named(property, name)))
     };
     Ok(PROPERTIES.iter().filter(wanted).collect())
+}
+
+/// The products of which something is proven, in their own words.
+fn introduce((device, master): &Both) {
+    for (role, product) in [("FS-Device", device), ("FS-Master", master)] {
+        if let Some(Product { name, machine }) = product {
+            print(format!("{role} as learnt: {} ({} states)", visible(name), machine.states.len()));
+        }
+    }
 }
 
 fn show((model, states, outcomes): &Proven) {
@@ -380,7 +413,7 @@ fn readings(model: &Model) -> Vec<String> {
     both.chain(masters).chain(devices).collect()
 }
 
-fn document((model, states, outcomes): &Proven) -> Value {
+fn document((model, states, outcomes): &Proven, (device, master): &Both) -> Value {
     let line =
         |line: &Line| json!({"spdu": line.spdu, "device": line.device, "answer": line.answer, "master": line.master});
     let lines = |lines: &[Line]| lines.iter().map(line).collect::<Vec<_>>();
@@ -412,6 +445,8 @@ fn document((model, states, outcomes): &Proven) -> Value {
         "faults": model.faults,
         "power_cycles": model.power_cycles,
         "master_restart": model.master_restart,
+        "device": device.as_ref().map(|product| &product.name),
+        "master": master.as_ref().map(|product| &product.name),
         "states": states,
         "properties": outcomes.iter().map(|(one, _)| outcome(one)).collect::<Vec<_>>(),
     })

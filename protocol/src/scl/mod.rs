@@ -247,6 +247,13 @@ pub struct Path {
 }
 
 impl Path {
+    /// These transitions; of more than four the first four.
+    pub fn of(transitions: &[T]) -> Path {
+        let mut path = Path::default();
+        transitions.iter().for_each(|id| path.push(*id));
+        path
+    }
+
     /// The transitions, in order.
     pub fn iter(&self) -> impl Iterator<Item = T> + '_ {
         self.taken.iter().take(usize::from(self.length)).map(|number| T(*number))
