@@ -17,9 +17,9 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::collections::BTreeMap;
 
 /// How every page looks.
-pub const STYLE: &str = include_str!("style.css");
+const STYLE: &str = include_str!("style.css");
 /// Nothing is loaded from anywhere.
-pub const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:";
+const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:";
 /// Cases of one id shown in full when they did not pass.
 const IN_FULL: usize = 3;
 /// Octets that details may take of the page: those of cases that need a reader, then those of one case an id. With the
@@ -32,6 +32,19 @@ const DUTS: usize = 16;
 /// Characters of a name shown in headings and facts.
 pub const NAME: usize = 120;
 
+/// The head of a page that fetches nothing; `more`: style beside that of every page.
+pub fn head(title: &str, more: &str) -> Markup {
+    html! {
+        head {
+            meta charset="utf-8";
+            meta http-equiv="Content-Security-Policy" content=(POLICY);
+            meta name="viewport" content="width=device-width, initial-scale=1";
+            title { (title) }
+            style { (PreEscaped(STYLE)) (PreEscaped(more)) }
+        }
+    }
+}
+
 /// The report of a run.
 pub fn render(run: &Run) -> String {
     let summary = Summary::of(run);
@@ -42,13 +55,7 @@ pub fn render(run: &Run) -> String {
     let markup = html! {
         (DOCTYPE)
         html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta http-equiv="Content-Security-Policy" content=(POLICY);
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { (title) }
-                style { (PreEscaped(STYLE)) }
-            }
+            (head(&title, ""))
             body {
                 main {
                     h1 { "IO-Link Safety conformance" @if !products.is_empty() { ": " (products) } }

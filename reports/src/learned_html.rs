@@ -1,9 +1,9 @@
 //! `learned.html`: the machine of a DUT beside that of the tables, what differs marked.
 
-use crate::html::{NAME, POLICY, STYLE};
+use crate::html::{NAME, head};
 use crate::learned::{Difference, Edge, Learned, Machine, Spdu};
 use crate::text::short;
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{DOCTYPE, Markup, html};
 use std::collections::BTreeMap;
 
 /// States drawn and listed at most.
@@ -27,13 +27,7 @@ pub fn render(learned: &Learned) -> String {
     let markup = html! {
         (DOCTYPE)
         html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta http-equiv="Content-Security-Policy" content=(POLICY);
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { (title) }
-                style { (PreEscaped(STYLE)) }
-            }
+            (head(&title, ""))
             body {
                 main {
                     h1 { (title) }

@@ -1,8 +1,7 @@
 //! `fsct dossier`: what records of one product have to show an assessor, as one page to be printed.
 
-use super::{Cases, RIG, USAGE, fail, print};
+use super::{Cases, RIG, Side, USAGE, fail, print};
 use crate::dossier::tool;
-use fsct_adapters::Role;
 use fsct_reports::dossier::{Dossier, read, render};
 use std::path::PathBuf;
 
@@ -29,12 +28,6 @@ pub struct Args {
     cases: Cases,
 }
 
-#[derive(Copy, Clone, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum Side {
-    Device,
-    Master,
-}
-
 /// Runs the command; the result is the exit code.
 pub fn run(args: &Args) -> u8 {
     execute(args).unwrap_or_else(|code| code)
@@ -44,7 +37,7 @@ fn execute(args: &Args) -> Result<u8, u8> {
     let sources = read(&args.records).map_err(|error| fail(USAGE, error))?;
     let library = args.cases.load()?;
     let tool = tool(&library);
-    let role = args.role.map(|side| if side == Side::Device { Role::Device } else { Role::Master }.to_string());
+    let role = args.role.map(|side| side.role().to_string());
     let dossier = Dossier::assemble(&tool, sources, role.as_deref(), args.date.clone());
     let dossier = dossier.map_err(|error| fail(USAGE, error))?;
     let out = args.out.display();

@@ -1,6 +1,6 @@
 //! `fsct gauntlet`: every mutant of the reference DUTs against the suites.
 
-use super::{Cases, RIG, USAGE, fail, print, show};
+use super::{Cases, RIG, Side, USAGE, fail, print, show};
 use crate::gauntlet::{matrix, matrix_of};
 use crate::problem::suggestion;
 use fsct_adapters::Role;
@@ -36,12 +36,6 @@ pub struct Args {
     cases: Cases,
 }
 
-#[derive(Copy, Clone, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum Side {
-    Device,
-    Master,
-}
-
 /// Runs the command; the result is the exit code.
 pub fn run(args: &Args) -> u8 {
     execute(args).unwrap_or_else(|code| code)
@@ -56,8 +50,8 @@ fn execute(args: &Args) -> Result<u8, u8> {
     let begin = Instant::now();
     let bar = if std::io::stderr().is_terminal() { ProgressBar::new_spinner() } else { ProgressBar::hidden() };
     let mut roles = Vec::new();
-    for (side, role) in [(Side::Device, Role::Device), (Side::Master, Role::Master)] {
-        if args.role.is_none_or(|wanted| wanted == side) {
+    for role in [Role::Device, Role::Master] {
+        if args.role.is_none_or(|wanted| wanted.role() == role) {
             let done = || bar.inc(1);
             let made = match args.suite.as_slice() {
                 [] => matrix(&library, role, &done),

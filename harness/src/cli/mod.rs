@@ -25,6 +25,7 @@ mod vectors;
 use crate::library::Library;
 use crate::problem::Problem;
 use clap::{Parser, Subcommand};
+use fsct_adapters::Role;
 use fsct_reports::visible;
 use std::io::{IsTerminal, Write as _};
 use std::path::PathBuf;
@@ -91,6 +92,22 @@ enum Command {
     /// Load a library and serve it: what `lib:` starts
     #[command(name = host::NAME, hide = true)]
     Host(host::Args),
+}
+
+/// A role on the command line.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Side {
+    Device,
+    Master,
+}
+
+impl Side {
+    const fn role(self) -> Role {
+        match self {
+            Side::Device => Role::Device,
+            Side::Master => Role::Master,
+        }
+    }
 }
 
 /// Runs the command of this process.

@@ -4,16 +4,13 @@ use super::gap::Gap;
 use super::product::name;
 use super::trace::State;
 use super::{CHAPTERS, Chapter, Dossier, Section, gaps, tracing};
-use crate::html::role;
+use crate::html::{head, role};
 use crate::record::EvidenceItem;
 use crate::text::{short, visible as clean};
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{DOCTYPE, Markup, html};
 use std::collections::BTreeSet;
 
-const STYLE: &str = include_str!("../style.css");
 const PRINT: &str = include_str!("dossier.css");
-/// Nothing is loaded from anywhere; drawings stand in the page itself.
-const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:";
 /// Characters of a name, and of a sentence.
 pub const NAME: usize = 120;
 pub const TEXT: usize = 600;
@@ -27,13 +24,7 @@ pub fn page(dossier: &Dossier<'_>) -> Markup {
     html! {
         (DOCTYPE)
         html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta http-equiv="Content-Security-Policy" content=(POLICY);
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "Dossier: " (name(dossier)) }
-                style { (PreEscaped(STYLE)) (PreEscaped(PRINT)) }
-            }
+            (head(&format!("Dossier: {}", name(dossier)), PRINT))
             body {
                 main {
                     header {
