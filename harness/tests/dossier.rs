@@ -45,6 +45,7 @@ fn everything() -> Folder {
         ("random", &["random", "--exchanges", "3000", "--faults", "400"][..]),
         ("bits", &["bits", "--flips", "1", "--length", "4"]),
         ("record", &["record", "--flips", "1", "--edition", "iec2022", "--mode", "crc16"]),
+        ("noise", &["noise", "--ber", "0.5", "--length", "4", "--spdus", "150000"]),
     ] {
         let out = folder.0.join(name).display().to_string();
         assert_eq!(fsct(&[&["campaign"], args, &["--dut", DEVICE, "--out", &out]].concat()).code, 0);
@@ -65,7 +66,7 @@ fn everything() -> Folder {
 fn records_of_every_kind_fill_every_chapter() {
     let folder = everything();
     let at = |name: &str| folder.0.join(name).display().to_string();
-    let records = [folder.out(), at("random"), at("bits"), at("record")];
+    let records = [folder.out(), at("random"), at("bits"), at("record"), at("noise")];
     let records: Vec<&str> = records.iter().map(String::as_str).collect();
     let html = page(&folder, &[&records[..], &["--date", "a day in May"]].concat());
     for text in [
@@ -77,6 +78,7 @@ fn records_of_every_kind_fill_every_chapter() {
         "faults had to be detected, and were",
         "corruptions had to be detected, none was undetected",
         "falsified records, none started it",
+        "Every SPDU was judged by its signature",
         "polynomial 0x4EAB",
         "counter-check-missing",
         "FSP_Watchdog</th><td>20 ms",
@@ -86,7 +88,7 @@ fn records_of_every_kind_fill_every_chapter() {
         assert!(html.contains(text), "no {text:?}");
     }
     // Each file is named by its hash.
-    assert_eq!(html.matches("<code class=\"hash\">").count(), 7);
+    assert_eq!(html.matches("<code class=\"hash\">").count(), 8);
     assert_eq!(html.matches("Not in these records: ").count(), 0, "every kind of record is there");
     // Nothing is loaded, runs, or has to be opened first.
     for word in ["<script", "http://", "https://", "<link", "url(", "<details"] {
