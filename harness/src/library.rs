@@ -3,6 +3,7 @@
 use crate::annex_i::{self, AnnexI};
 use crate::case::model::{Action, Blocks, Starts, Step};
 use crate::case::{self, Case, Covered, Start, Suite};
+use crate::complete;
 use crate::coverage::Coverage;
 use crate::ledger::{Class, Ledger};
 use crate::limits;
@@ -158,6 +159,7 @@ impl Library {
         }
         // Last, so that the first failure told is that of a suite about one thing.
         suites.sort_by_key(|suite: &Suite| match suite.group.as_deref() {
+            Some(complete::GROUP) => 3,
             Some(matrix::GROUP) => 2,
             Some(scenario::GROUP) => 1,
             _ => 0,

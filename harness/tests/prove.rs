@@ -211,6 +211,8 @@ fn a_delay_across_a_resynchronisation_is_shown() {
 #[case::timers(&["--timers", "nd", "--property", "P4"], "P4 is not asked: it counts exchanges")]
 #[case::kind(&["--timers", "none"], "`none` is no kind of timers; counted and nd")]
 #[case::tolerances(&["--tolerances", "--storing", "2"], "cannot be used with")]
+#[case::matrix(&["--matrix", "tolerated", "--watchdog", "3"], "cannot be used with")]
+#[case::which(&["--matrix", "some"], "[possible values: tolerated, all]")]
 #[case::no_case(&["--storing", "2", "--emit", "x.yaml"], "cannot be used with")]
 fn what_is_not_asked_is_said(#[case] args: &[&str], #[case] sentence: &str) {
     let run = fsct(&[&["prove"], args].concat());

@@ -7,13 +7,12 @@ use crate::learned::{self, Gateway, Product};
 use crate::machine::{FsDevice, FsMaster, Shown};
 use crate::model::{Model, Timers, Timing};
 use crate::reading::{Machine, Reading, Reads};
-use crate::search::Spread;
+use crate::search::Table;
 use fsct_protocol::scl::device::Received;
 use fsct_protocol::scl::master::Answer;
 use fsct_protocol::scl::{Path, State, Var};
 use fsct_protocol::spdu::{Control, Status};
-use std::collections::HashMap;
-use std::hash::{BuildHasherDefault, Hash};
+use std::hash::Hash;
 use std::sync::Arc;
 
 /// What an exchange does to an image.
@@ -105,12 +104,12 @@ impl Step {
 /// Machines met so far, each with a number.
 struct Met<M> {
     all: Vec<M>,
-    numbers: HashMap<M, u32>,
+    numbers: Table<M, u32>,
 }
 
 impl<M: Copy + Eq + Hash> Met<M> {
     fn new() -> Met<M> {
-        Met { all: Vec::new(), numbers: HashMap::new() }
+        Met { all: Vec::new(), numbers: Table::default() }
     }
 
     fn number(&mut self, machine: M) -> u32 {
@@ -135,7 +134,7 @@ enum DeviceSide {
     Learned(Product),
 }
 
-type Memo<K> = HashMap<K, Arc<[Leg]>, BuildHasherDefault<Spread>>;
+type Memo<K> = Table<K, Arc<[Leg]>>;
 
 /// The composition: knows what may happen in an exchange.
 pub struct World {
@@ -170,8 +169,8 @@ impl World {
             kept: model.ways(Machine::Master).iter().any(|reads| FsMaster::remembers(*reads)),
             masters: Met::new(),
             devices: Met::new(),
-            master_legs: HashMap::default(),
-            device_legs: HashMap::default(),
+            master_legs: Memo::default(),
+            device_legs: Memo::default(),
         }
     }
 
@@ -417,7 +416,7 @@ impl World {
             let path = expire(&mut expired);
             follow(expired, path, 0);
         }
-        if !received && !(due && counted) {
+        if !(received || due && counted) {
             follow(machine, path, if runs && counted { timer + 1 } else { 0 });
         }
     }
@@ -452,16 +451,15 @@ fn either<M, E>(after: Vec<(M, Leg)>, kind: impl Fn(M) -> E) -> Vec<(E, Leg)> {
 
 /// Each outcome once: the first way to it stays, so that an undisturbed one is preferred. A machine that goes another way to the
 /// same place is another outcome, for the properties look at the way, and so is one that took a stored image.
-fn distinct<M>(after: Vec<(M, Leg)>, mut number: impl FnMut(M) -> u32) -> Arc<[Leg]> {
-    let mut legs: Vec<Leg> = Vec::new();
-    let outcome = |leg: &Leg| (leg.to, leg.timer, leg.path, taken_from_store(leg));
+fn distinct<M: Eq>(after: Vec<(M, Leg)>, mut number: impl FnMut(M) -> u32) -> Arc<[Leg]> {
+    let outcome = |leg: &Leg| (leg.timer, leg.path, taken_from_store(leg));
+    let mut first: Vec<(M, Leg)> = Vec::new();
     for (machine, leg) in after {
-        let leg = Leg { to: number(machine), ..leg };
-        if !legs.iter().any(|known| outcome(known) == outcome(&leg)) {
-            legs.push(leg);
+        if !first.iter().any(|(known, way)| outcome(way) == outcome(&leg) && *known == machine) {
+            first.push((machine, leg));
         }
     }
-    legs.into()
+    first.into_iter().map(|(machine, leg)| Leg { to: number(machine), ..leg }).collect()
 }
 
 /// How many exchanges ago the image was presented that a machine has processed, where it is a stored one.

@@ -5,9 +5,8 @@
 
 use crate::exchange::{Around, Joint, Step, World};
 use crate::learned::{Device, Master};
-use crate::search::{End, Found, explore, steps_to};
+use crate::search::{End, Found, Table, explore, steps_to};
 use fsct_protocol::scl::{State, Var};
-use std::collections::HashMap;
 
 /// What was found about recovery.
 pub struct Recovery {
@@ -23,7 +22,7 @@ pub fn recovery(world: &mut World) -> Recovery {
     if let End::TooMany = found.end {
         return Recovery { found, for_ever: None };
     }
-    let (mut joints, mut reached, mut numbers) = (Vec::new(), Vec::new(), HashMap::new());
+    let (mut joints, mut reached, mut numbers) = (Vec::new(), Vec::new(), Table::default());
     for state in 0..states.len() {
         numbers.entry(states.joint(state)).or_insert_with_key(|joint| {
             joints.push(*joint);
@@ -74,7 +73,7 @@ pub fn recovery(world: &mut World) -> Recovery {
 fn tail(
     world: &mut World,
     joints: &[Joint],
-    numbers: &HashMap<Joint, usize>,
+    numbers: &Table<Joint, usize>,
     needed: &[Option<u8>],
     locked: usize,
 ) -> (Vec<Step>, usize) {

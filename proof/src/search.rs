@@ -39,14 +39,37 @@ impl Hasher for Spread {
     }
 
     fn write(&mut self, octets: &[u8]) {
-        octets.iter().for_each(|octet| self.write_u64((*octet).into()));
+        for octets in octets.chunks(8) {
+            let mut word = [0; 8];
+            word.iter_mut().zip(octets).for_each(|(to, octet)| *to = *octet);
+            self.write_u64(u64::from_le_bytes(word));
+        }
+    }
+
+    fn write_u8(&mut self, value: u8) {
+        self.write_u64(value.into());
+    }
+
+    fn write_u32(&mut self, value: u32) {
+        self.write_u64(value.into());
     }
 
     fn write_u64(&mut self, value: u64) {
         let product = u128::from(value ^ self.0) * 0x9E37_79B9_7F4A_7C15;
         self.0 = (product >> 64) as u64 ^ product as u64;
     }
+
+    fn write_usize(&mut self, value: usize) {
+        self.write_u64(value as u64);
+    }
+
+    fn write_isize(&mut self, value: isize) {
+        self.write_u64(value as u64);
+    }
 }
+
+/// A map whose keys are spread so.
+pub(crate) type Table<K, V> = HashMap<K, V, BuildHasherDefault<Spread>>;
 
 /// What a search found.
 pub struct Found {
@@ -78,12 +101,12 @@ pub enum End {
 pub(crate) struct States {
     keys: Vec<Key>,
     parents: Vec<u32>,
-    numbers: HashMap<Key, u32, BuildHasherDefault<Spread>>,
+    numbers: Table<Key, u32>,
 }
 
 impl States {
     fn new(start: Key) -> States {
-        let mut states = States { keys: Vec::new(), parents: Vec::new(), numbers: HashMap::default() };
+        let mut states = States { keys: Vec::new(), parents: Vec::new(), numbers: Table::default() };
         states.add(start, 0);
         states
     }

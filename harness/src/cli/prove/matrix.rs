@@ -127,3 +127,23 @@ fn document(row: &Row, found: &[Option<Failing>]) -> Value {
         "cells": row.cells.iter().zip(found).map(cell).collect::<Vec<_>>(),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    /// Nothing is left out: each row has each watchdog in each timing, and each reading of a product has a row.
+    #[test]
+    fn the_rows_are_complete() {
+        let library = Library::embedded().expect("cases that load");
+        let tolerated = rows(&library, Which::Tolerated);
+        let [masters, devices] = Machine::ALL.map(|machine| library.readings.of_product(machine).len());
+        assert_eq!(tolerated.len(), 1 + masters + devices + 1);
+        assert_eq!(rows(&library, Which::All).len(), 1 + library.readings.iter().count() + masters * devices + 1);
+        for row in tolerated {
+            let cells: HashSet<_> = row.cells.iter().map(|cell| (cell.watchdog, cell.timing.to_string())).collect();
+            assert_eq!((cells.len(), row.refused), (2 * WATCHDOGS.count(), false), "{}", row.name);
+        }
+    }
+}
