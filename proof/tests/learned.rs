@@ -34,7 +34,7 @@ fn the_machines_of_the_tables_prove_what_the_rows_prove(
         Side::Device => Model { device: table, ..rows.clone() },
         Side::Master => Model { master: table, ..rows.clone() },
     };
-    for property in &PROPERTIES {
+    for property in PROPERTIES.iter().filter(|property| property.not_asked(&rows).is_none()) {
         assert_eq!(asked(&learned, property), asked(&rows, property), "{}", property.name);
     }
 }

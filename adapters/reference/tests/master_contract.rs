@@ -156,7 +156,7 @@ fn options_of_the_address() {
 
 #[rstest]
 #[case(&[("port", "1")], r#"the reference DUT has no option "port", did you mean "ports"?"#)]
-#[case(&[("mutant", "wrong-seed")], r#"the reference DUT has no mutant "wrong-seed", did you mean "pdout-reversed"?"#)]
+#[case(&[("mutant", "wrong-seed")], r#"the reference DUT has no mutant "wrong-seed", did you mean "A06-not-old"?"#)]
 #[case(&[("ports", "0")], r#"the reference master has 1 to 8 ports, not "0""#)]
 #[case(&[("ports", "9")], r#"the reference master has 1 to 8 ports, not "9""#)]
 #[case(&[("password", "")], r#"a password of the reference master is up to 8 hexadecimal digits, not """#)]
