@@ -3,8 +3,9 @@
 //! Two words lead to the same state until a word behind them tells them apart: that is the observation table of L* with the
 //! counterexamples of Rivest and Schapire. The machine found so is then tested with `access · inputs^(k + 1) · separating words`,
 //! which finds everything that `k` states more than it has could hide. Before that it is asked where it differs from a machine that is
-//! expected, if there is one: most products are nearly that, and what is told of a difference has then been seen. Nothing is asked twice for an answer that is known, but each
-//! word repeats the beginning of others: a DUT that does not always answer alike contradicts itself soon.
+//! expected, if there is one: most products are nearly that, and what is told of a difference has then been seen. Nothing is asked
+//! twice for an answer that is known, but each word repeats the beginning of others: a DUT that does not always answer alike
+//! contradicts itself soon.
 
 use crate::{Difference, Edge, Mealy, compared};
 use std::collections::HashMap;
