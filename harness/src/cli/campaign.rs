@@ -8,7 +8,7 @@ mod replay;
 
 use super::bench;
 use super::run::{candidate_profile, given_profiles};
-use super::{Cases, NOTHING_RAN, RIG, USAGE, fail, print};
+use super::{Cases, NOTHING_RAN, RIG, USAGE, fail, interruption, print, write};
 use crate::campaign::{Bench, dut_info};
 use crate::injection::shrink::shrink;
 use crate::injection::{Halt, Ran, Script, Tally, Target};
@@ -132,12 +132,7 @@ impl Ground {
             let sentence = format!("profile `{}` is for a {}, the DUT says it is a {role}", other.name, other.role);
             return Err(fail(USAGE, sentence));
         }
-        let interrupted = Arc::new(AtomicBool::new(false));
-        for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
-            // The second signal ends the process as usual.
-            let _ = signal_hook::flag::register_conditional_default(signal, interrupted.clone());
-            let _ = signal_hook::flag::register(signal, interrupted.clone());
-        }
+        let interrupted = interruption();
         let ground = Ground {
             address,
             url: common.dut.clone(),
@@ -162,10 +157,7 @@ impl Ground {
     }
 
     fn write(&self, name: &str, text: &str) -> Result<PathBuf, u8> {
-        let path = self.out.join(name);
-        let written = std::fs::create_dir_all(&self.out).and_then(|()| std::fs::write(&path, text));
-        written.map_err(|error| fail(RIG, format!("{} cannot be written: {error}", path.display())))?;
-        Ok(path)
+        write(&self.out, name, text)
     }
 
     /// Carries a list out over a fresh connection.

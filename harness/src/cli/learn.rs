@@ -1,7 +1,7 @@
 //! `fsct learn`: the machine of a DUT as a tester sees it, beside that of the tables.
 
 use super::run::{candidate_profile, given_profiles};
-use super::{Cases, RIG, USAGE, bench, fail, print};
+use super::{Cases, RIG, USAGE, bench, fail, interruption, print, write};
 use crate::campaign::dut_info;
 use crate::learn::{Lab, Trouble, document, side, variant};
 use fsct_observed::Side;
@@ -13,8 +13,6 @@ use fsct_reports::learned as file;
 use fsct_reports::record::VariantInfo;
 use fsct_reports::{learned_page, visible};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 /// Exit code when the DUT differs from the tables.
 const DIFFERS: u8 = 1;
@@ -76,12 +74,7 @@ fn execute(args: &Args) -> Result<u8, u8> {
         return Err(fail(USAGE, contradiction));
     }
     let variant = variant(&bench.description, profile, args.edition, args.mode).map_err(|why| fail(USAGE, why))?;
-    let interrupted = Arc::new(AtomicBool::new(false));
-    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
-        // The second signal ends the process as usual.
-        let _ = signal_hook::flag::register_conditional_default(signal, interrupted.clone());
-        let _ = signal_hook::flag::register(signal, interrupted.clone());
-    }
+    let interrupted = interruption();
     let dut = dut_info(&args.dut, profile, &bench);
     let side = side(profile.role);
     let bounds = Bounds { extra: args.extra.into(), most_states: args.most_states, most_inputs: args.most_inputs };
@@ -219,10 +212,4 @@ fn failed(side: Side, failure: &Failure<Seen, Trouble>) -> u8 {
             )
         }
     }
-}
-
-fn write(folder: &Path, name: &str, text: &str) -> Result<(), u8> {
-    let path = folder.join(name);
-    let written = std::fs::create_dir_all(folder).and_then(|()| std::fs::write(&path, text));
-    written.map_err(|error| fail(RIG, format!("{} cannot be written: {error}", path.display())))
 }

@@ -28,8 +28,10 @@ use clap::{Parser, Subcommand};
 use fsct_adapters::Role;
 use fsct_reports::visible;
 use std::io::{IsTerminal, Write as _};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// Exit code for wrong usage and invalid input.
 pub const USAGE: u8 = 2;
@@ -108,6 +110,24 @@ impl Side {
             Side::Master => Role::Master,
         }
     }
+}
+
+/// Set once the user asks to stop; asked again, the process ends as usual.
+fn interruption() -> Arc<AtomicBool> {
+    let interrupted = Arc::new(AtomicBool::new(false));
+    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
+        let _ = signal_hook::flag::register_conditional_default(signal, interrupted.clone());
+        let _ = signal_hook::flag::register(signal, interrupted.clone());
+    }
+    interrupted
+}
+
+/// Writes a file into a folder, which is made if it is not there; where it stands.
+fn write(folder: &Path, name: &str, text: &str) -> Result<PathBuf, u8> {
+    let path = folder.join(name);
+    let written = std::fs::create_dir_all(folder).and_then(|()| std::fs::write(&path, text));
+    written.map_err(|error| fail(RIG, format!("{} cannot be written: {error}", path.display())))?;
+    Ok(path)
 }
 
 /// Runs the command of this process.

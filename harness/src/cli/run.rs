@@ -1,6 +1,6 @@
 //! `fsct run`: judges a DUT and leaves the record and the reports.
 
-use super::{Cases, RIG, USAGE, bench, colour, fail, print, show};
+use super::{Cases, RIG, USAGE, bench, colour, fail, interruption, print, show};
 use crate::annex_i;
 use crate::campaign::{Bench, Judges, Run, dut_info};
 use crate::complete;
@@ -21,8 +21,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 /// Failures told on the terminal; the rest is in the reports.
@@ -222,12 +221,7 @@ fn execute(args: &Args) -> Result<u8, u8> {
         scenarios: scenarios(&library, &plans),
         complete: plans.iter().enumerate().flat_map(|(dut, plan)| complete::planned(dut, plan)).collect(),
     };
-    let interrupted = Arc::new(AtomicBool::new(false));
-    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
-        // The second signal ends the process as usual.
-        let _ = signal_hook::flag::register_conditional_default(signal, interrupted.clone());
-        let _ = signal_hook::flag::register(signal, interrupted.clone());
-    }
+    let interrupted = interruption();
     let bar = progress(header.planned);
     let mut told = Told { bar: &bar, failures: 0 };
     let mut taken = Vec::new();

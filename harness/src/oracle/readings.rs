@@ -76,7 +76,8 @@ impl Readings {
         self.0.iter().filter(may).map(|row| row.reading).collect()
     }
 
-    /// Holds the tolerances against the table. What comes back are the problems: a tolerance that lets a refused reading pass, names one that is not its own, or names none where there are some.
+    /// Holds the tolerances against the table. What comes back are the problems: a tolerance that lets a refused reading pass, names
+    /// one that is not its own, or names none where there are some.
     pub fn check(&self, source: &Arc<Source>, tolerances: &Tolerances) -> Vec<Problem> {
         tolerances.iter().flat_map(|tolerance| self.check_one(source, tolerance)).collect()
     }
